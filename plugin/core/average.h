@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/* The visibility function of a pixel: the weighted average of its rays' transmittance functions (LV 5.1). */
+#ifndef DSM_CORE_AVERAGE_H
+#define DSM_CORE_AVERAGE_H
+
+#include <stdint.h>
+
+#include "core/vertices.h"
+
+/* Function i is all[first[i]] … all[first[i+1]-1], with weight weights[i] >= 0; the weights add up to 1. */
+typedef struct {
+  const vertex *all;
+  const size_t *first;
+  const double *weights;
+  uint32_t count;
+} average_input;
+
+/* Scratch that a caller keeps between calls; zero-initialise. */
+typedef struct {
+  struct average_cursor *heap;
+  rgb *slopes;
+  size_t room;
+} average_scratch;
+
+/* Appends the average to `out`: a heap sweep in O(n log n) over n vertices that carries value and slope.
+ * Free of drift: after 10^6 vertices the running value is within 1e-12 of the direct sum. Vertices that
+ * change neither value nor slope are left out. In [0,1]; never grows if no function does. */
+dsm_result average_sweep(const average_input *in, average_scratch *scratch, vertices *out);
+void average_free(average_scratch *scratch);
+
+/* The same by the direct O(n^2) sum, for tests and for merging a few functions. */
+dsm_result average_direct(const average_input *in, vertices *out);
+
+#endif

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "core/face_fit.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/box_outline.h"
+
+static const double COS_WIDEST = 0.5;   /* 60 degrees: beyond, a perspective pixel at the rim is 1/8 as large as one
+                                           in the middle, and a cube serves better */
+
+/* Pixels on each side that see no caster. One whole pixel must lie between the casters' outline and the centre of
+ * the outermost pixel's filter support. */
+static uint32_t margin_pixels(double filter_width)
+{
+  return (uint32_t)ceil(0.5 * filter_width + 0.5);
+}
+
+static uint32_t inner_pixels(uint32_t resolution, uint32_t margin)
+{
+  return resolution > 2 * margin ? resolution - 2 * margin : 1;
+}
+
+/* Sets a face's grid: whole pixels of the given size, centred over the area, margin added. */
+static void lay_grid(face *f, const outline *seen, uint32_t margin, double pixel_u, double pixel_v)
+{
+  const rectangle *a = &seen->area;
+  double across = a->u1 - a->u0, up = a->v1 - a->v0;
+  uint32_t inner_u = (uint32_t)fmax(1, ceil(across / pixel_u - 1e-6));   /* forgives rounding, not casters */
+  uint32_t inner_v = (uint32_t)fmax(1, ceil(up / pixel_v - 1e-6));
+  f->width = inner_u + 2 * margin;
+  f->height = inner_v + 2 * margin;
+  f->pixel_u = pixel_u;
+  f->pixel_v = pixel_v;
+  f->u0 = 0.5 * (a->u0 + a->u1) - 0.5 * f->width * pixel_u;
+  f->v0 = 0.5 * (a->v0 + a->v1) - 0.5 * f->height * pixel_v;
+  /* room for the rounding of a host's own depths at the very front and back */
+  double slack = 1e-9 * (seen->far_depth - seen->near_depth) + 1e-15 * seen->far_depth;
+  f->near_depth = fmax(0, seen->near_depth - slack);
+  f->far_depth = seen->far_depth + slack;
+}
+
+/* Pixel size for areas up to `across` x `up`; `least` keeps it above rounding where casters are points or lines. */
+static void pixel_size(const uint32_t resolution[2], uint32_t margin, double across, double up, double least,
+                       double size[2])
+{
+  if (resolution[1]) {
+    size[0] = fmax(across / inner_pixels(resolution[0], margin), least);
+    size[1] = fmax(up / inner_pixels(resolution[1], margin), least);
+  }
+  else
+    size[0] = size[1] = fmax(fmax(across, up) / inner_pixels(resolution[0], margin), least);
+}
+
+static outline outline_of(const dsm_light *light, const projection *p, const frame *axes, const rectangle *window)
+{
+  outline sum = OUTLINE_EMPTY;
+  for (uint64_t i = 0; i < light->caster_count; i++)
+    outline_add(&sum, p->origin, axes, p->perspective, window, &light->casters[i]);
+  return sum;
+}
+
+/* Pulls an area that was collected in a widened window back to the window. It may become a line or a point. */
+static void clamp_to(rectangle *a, const rectangle *w)
+{
+  a->u0 = fmax(w->u0, fmin(w->u1, a->u0));
+  a->u1 = fmax(w->u0, fmin(w->u1, a->u1));
+  a->v0 = fmax(w->v0, fmin(w->v1, a->v0));
+  a->v1 = fmax(w->v0, fmin(w->v1, a->v1));
+}
+
+/* Casters just outside the window reach into it through the filter: they are looked for in the window widened by the
+ * margin at its largest. */
+static outline outline_near(const dsm_light *light, const projection *p, const frame *axes, const rectangle *window,
+                            const uint32_t resolution[2], uint32_t margin)
+{
+  double size[2];
+  pixel_size(resolution, margin, window->u1 - window->u0, window->v1 - window->v0, 0, size);
+  rectangle wide = {window->u0 - margin * size[0], window->v0 - margin * size[1],
+                    window->u1 + margin * size[0], window->v1 + margin * size[1]};
+  outline seen = outline_of(light, p, axes, &wide);
+  clamp_to(&seen.area, window);
+  return seen;
+}
+
+static void fit_one(const dsm_light *light, projection *p, const rectangle *window, const uint32_t resolution[2],
+                    uint32_t margin)
+{
+  face *f = &p->faces[0];
+  f->axes = p->axes;
+  p->count = 1;
+  outline seen = outline_near(light, p, &p->axes, window, resolution, margin);
+  if (!(seen.near_depth <= seen.far_depth))
+    return;
+  const rectangle *a = &seen.area;
+  double reach = fmax(fmax(fabs(a->u0), fabs(a->u1)), fmax(fabs(a->v0), fabs(a->v1)));
+  double size[2];
+  pixel_size(resolution, margin, a->u1 - a->u0, a->v1 - a->v0, 1e-14 * reach + 1e-30, size);
+  lay_grid(f, &seen, margin, size[0], size[1]);
+}
+
+static void negate(double a[3])
+{
+  for (int i = 0; i < 3; i++)
+    a[i] = -a[i];
+}
+
+static frame cube_axes(const frame *base, int index)
+{
+  frame f = *base;
+  if (index / 2 == 1) {
+    memcpy(f.forward, base->right, sizeof f.forward);
+    memcpy(f.right, base->forward, sizeof f.right);
+    negate(f.right);
+  }
+  else if (index / 2 == 2) {
+    memcpy(f.forward, base->up, sizeof f.forward);
+    memcpy(f.up, base->forward, sizeof f.up);
+    negate(f.up);
+  }
+  if (index % 2) {
+    negate(f.forward);
+    negate(f.right);
+  }
+  return f;
+}
+
+/* All faces of a cube have pixels of one size, so that shadows keep their softness across edges; the largest
+ * face has the resolution asked for. `half` is set for spotlights up to 90 degrees, which leave the back dark. */
+static void fit_cube(const dsm_light *light, projection *p, int half, const uint32_t resolution[2], uint32_t margin)
+{
+  outline seen[MAX_FACES];
+  double across = 0, up = 0;
+  p->count = MAX_FACES;
+  for (int i = 0; i < MAX_FACES; i++) {
+    face *f = &p->faces[i];
+    f->axes = cube_axes(&p->axes, i);
+    seen[i] = OUTLINE_EMPTY;
+    rectangle window = {-1, -1, 1, 1};
+    if (half && i == 1)
+      continue;
+    if (half && i >= 2) {
+      /* the spot's forward axis is ∓right of faces 2 and 3 and ∓up of faces 4 and 5 */
+      double *low = i < 4 ? &window.u0 : &window.v0, *high = i < 4 ? &window.u1 : &window.v1;
+      double along = 0;
+      for (int k = 0; k < 3; k++)
+        along += p->axes.forward[k] * (i < 4 ? f->axes.right[k] : f->axes.up[k]);
+      *(along > 0 ? low : high) = 0;
+    }
+    seen[i] = outline_near(light, p, &f->axes, &window, resolution, margin);
+    if (seen[i].near_depth <= seen[i].far_depth) {
+      across = fmax(across, seen[i].area.u1 - seen[i].area.u0);
+      up = fmax(up, seen[i].area.v1 - seen[i].area.v0);
+    }
+  }
+  double size[2];
+  pixel_size(resolution, margin, across, up, 1e-9, size);
+  p->overlap = 0.5 * fmin(1, fmin(size[0], size[1]));
+  for (int i = 0; i < MAX_FACES; i++)
+    if (seen[i].near_depth <= seen[i].far_depth)
+      lay_grid(&p->faces[i], &seen[i], margin, size[0], size[1]);
+}
+
+/* The direction of the middle of all casters, and whether they all lie within 60 degrees of it. */
+static int narrow_view(const dsm_light *light, double direction[3])
+{
+  double low[3], high[3], length = 0;
+  for (int i = 0; i < 3; i++) {
+    low[i] = INFINITY;
+    high[i] = -INFINITY;
+    for (uint64_t k = 0; k < light->caster_count; k++) {
+      low[i] = fmin(low[i], light->casters[k].low[i]);
+      high[i] = fmax(high[i], light->casters[k].high[i]);
+    }
+    direction[i] = 0.5 * (low[i] - light->origin[i]) + 0.5 * (high[i] - light->origin[i]);
+    length += direction[i] * direction[i];
+  }
+  length = sqrt(length);
+  if (!(length > 0))
+    return 0;
+  for (int i = 0; i < 3; i++)
+    direction[i] /= length;
+  /* a cone of less than 90 degrees is convex: it holds a box if it holds the corners */
+  for (uint64_t k = 0; k < light->caster_count; k++)
+    for (int corner = 0; corner < 8; corner++) {
+      double along = 0, square = 0;
+      for (int i = 0; i < 3; i++) {
+        double q = ((corner >> i & 1) ? light->casters[k].high[i] : light->casters[k].low[i]) - light->origin[i];
+        along += q * direction[i];
+        square += q * q;
+      }
+      if (!(along > 0) || along < COS_WIDEST * sqrt(square))
+        return 0;
+    }
+  return 1;
+}
+
+void face_fit(const dsm_light *light, const uint32_t resolution[2], double filter_width, projection *out)
+{
+  static const double ahead[3] = {0, 0, 1};
+  uint32_t margin = margin_pixels(filter_width);
+  double forward[3];
+  memset(out, 0, sizeof *out);
+  memcpy(out->origin, light->origin, sizeof out->origin);
+  out->perspective = light->kind != DSM_LIGHT_PARALLEL;
+  if (light->caster_count == 0)
+    return;
+
+  if (light->kind == DSM_LIGHT_PARALLEL) {
+    double r = light->radius > 0 ? light->radius : INFINITY;
+    rectangle window = {-r, -r, r, r};
+    out->axes = frame_along(light->direction);
+    fit_one(light, out, &window, resolution, margin);
+  }
+  else if (light->kind == DSM_LIGHT_SPOT) {
+    double c = light->cos_angle, t = sqrt(fmax(0, 1 - c * c)) / fmax(c, 1e-300);
+    rectangle window = {-t, -t, t, t};
+    out->axes = frame_along(light->direction);
+    if (c >= COS_WIDEST)
+      fit_one(light, out, &window, resolution, margin);
+    else
+      fit_cube(light, out, c >= 0, resolution, margin);
+  }
+  else if (narrow_view(light, forward)) {
+    const double t = 2;   /* above tan 60 degrees: all casters are inside */
+    rectangle window = {-t, -t, t, t};
+    out->axes = frame_along(forward);
+    fit_one(light, out, &window, resolution, margin);
+  }
+  else {
+    out->axes = frame_along(ahead);
+    fit_cube(light, out, 0, resolution, margin);
+  }
+}

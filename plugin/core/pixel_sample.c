@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "core/pixel_sample.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static uint32_t reverse_bits(uint32_t x)
+{
+  x = (x >> 16) | (x << 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+/* Second dimension of Sobol' (the first is reverse_bits): column i of Pascal's triangle modulo 2. */
+static uint32_t sobol_second(uint32_t index)
+{
+  uint32_t x = 0, column = 0x80000000u;
+  for (; index; index >>= 1, column ^= column >> 1)
+    if (index & 1)
+      x ^= column;
+  return x;
+}
+
+/* Nested uniform scrambling of a reversed number by a hash in which each bit depends on lower bits only: Laine and
+ * Karras 2011, as used by Burley 2020, with the better constants of Vegdahl 2021. */
+static uint32_t scramble(uint32_t reversed, uint32_t seed)
+{
+  uint32_t x = reversed;
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return reverse_bits(x);
+}
+
+static uint64_t mix(uint64_t x)   /* the finaliser of splitmix64 */
+{
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+pixel_seed pixel_sample_seed(uint32_t face, uint32_t x, uint32_t y)
+{
+  uint64_t h = mix(mix((uint64_t)face + 0x9e3779b97f4a7c15u) ^ ((uint64_t)x << 32 | y));
+  return (pixel_seed){(uint32_t)h, (uint32_t)(h >> 32)};
+}
+
+/* Inverse of the normal distribution function, relative error 1.2e-9 (Acklam 2003). */
+static double normal_inverse(double p)
+{
+  static const double a[] = {-3.969683028665376e+01, 2.209460984245205e+02, -2.759285104469687e+02,
+                             1.383577518672690e+02, -3.066479806614716e+01, 2.506628277459239e+00};
+  static const double b[] = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02,
+                             6.680131188771972e+01, -1.328068155288572e+01};
+  static const double c[] = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
+                             -2.549732539343734e+00, 4.374664141464968e+00, 2.938163982698783e+00};
+  static const double d[] = {7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00,
+                             3.754408661907416e+00};
+  double tail = p < 0.5 ? p : 1 - p;
+  if (tail >= 0.02425) {
+    double q = p - 0.5, r = q * q;
+    return (((((a[0] * r + a[1]) * r + a[2]) * r + a[3]) * r + a[4]) * r + a[5]) * q
+         / (((((b[0] * r + b[1]) * r + b[2]) * r + b[3]) * r + b[4]) * r + 1);
+  }
+  double q = sqrt(-2 * log(tail));
+  double x = (((((c[0] * q + c[1]) * q + c[2]) * q + c[3]) * q + c[4]) * q + c[5])
+           / ((((d[0] * q + d[1]) * q + d[2]) * q + d[3]) * q + 1);
+  return p < 0.5 ? x : -x;
+}
+
+/* The filter's inverse distribution function on a support of ±1. The gaussian is RenderMan's, exp(-2 x^2): two
+ * standard deviations, cut at the support. */
+static double filter_inverse(filter_kind kind, double u)
+{
+  static const double cut = 0.022750131948179195;   /* of the normal distribution, below -2 */
+  switch (kind) {
+    case FILTER_TRIANGLE:
+      return u < 0.5 ? sqrt(2 * u) - 1 : 1 - sqrt(2 - 2 * u);
+    case FILTER_GAUSSIAN:
+      return fmax(-1, fmin(1, 0.5 * normal_inverse(cut + u * (1 - 2 * cut))));
+    case FILTER_BOX:
+      break;
+  }
+  return 2 * u - 1;
+}
+
+void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, uint32_t index, double offset[2])
+{
+  /* index is reverse_bits of the first dimension, so it needs no reversal before the scrambling */
+  double u = ((double)scramble(index, seed.x) + 0.5) * 0x1p-32;
+  double v = ((double)scramble(reverse_bits(sobol_second(index)), seed.y) + 0.5) * 0x1p-32;
+  offset[0] = 0.5 * filter->width * filter_inverse(filter->kind, u);
+  offset[1] = 0.5 * filter->width * filter_inverse(filter->kind, v);
+}
+
+static uint64_t spread_bits(uint32_t value)   /* a zero between any two bits */
+{
+  uint64_t x = value;
+  x = (x | x << 16) & 0x0000ffff0000ffffu;
+  x = (x | x << 8) & 0x00ff00ff00ff00ffu;
+  x = (x | x << 4) & 0x0f0f0f0f0f0f0f0fu;
+  x = (x | x << 2) & 0x3333333333333333u;
+  return (x | x << 1) & 0x5555555555555555u;
+}
+
+static uint64_t morton_code(uint32_t index)
+{
+  return spread_bits(reverse_bits(index)) << 1 | spread_bits(sobol_second(index));
+}
+
+static int compare_places(const void *a, const void *b)
+{
+  uint64_t x = morton_code(*(const uint32_t *)a), y = morton_code(*(const uint32_t *)b);
+  return (x > y) - (x < y);
+}
+
+void pixel_sample_pairs(uint32_t count, uint32_t *order)
+{
+  for (uint32_t i = 0; i < count; i++)
+    order[i] = i;
+  qsort(order, count, sizeof *order, compare_places);
+}

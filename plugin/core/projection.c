@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "core/projection.h"
+
+#include <math.h>
+
+static double dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void normalise(double a[3])
+{
+  double length = sqrt(dot(a, a));
+  for (int i = 0; i < 3; i++)
+    a[i] /= length;
+}
+
+frame frame_along(const double forward[3])
+{
+  frame f;
+  /* the y axis, unless it is within 8 degrees of forward: an animated light then turns its frame but seldom */
+  double helper[3] = {0, 1, 0};
+  if (fabs(forward[1]) > 0.99) {
+    helper[1] = 0;
+    helper[2] = 1;
+  }
+  for (int i = 0; i < 3; i++)
+    f.forward[i] = forward[i];
+  cross(helper, f.forward, f.right);
+  normalise(f.right);
+  cross(f.forward, f.right, f.up);
+  return f;
+}
+
+/* Whether the face can say anything about pixel coordinates x, y; false for NaN. Half a pixel beyond the grid the
+ * bilinear neighbours are all outside. */
+static int touches(const face *f, double x, double y)
+{
+  return x > -0.5 && x < f->width + 0.5 && y > -0.5 && y < f->height + 0.5;
+}
+
+/* Adds the face's view of the point at q (relative to the origin) unless it lies outside. */
+static uint32_t add_hit(const projection *p, uint32_t index, const double q[3], double weight, projected *hit)
+{
+  const face *f = &p->faces[index];
+  if (f->width == 0)
+    return 0;
+  double z = dot(q, f->axes.forward);
+  if (!(z > 0))
+    return 0;
+  double u = dot(q, f->axes.right), v = dot(q, f->axes.up);
+  if (p->perspective) {
+    u /= z;
+    v /= z;
+  }
+  double x = (u - f->u0) / f->pixel_u, y = (v - f->v0) / f->pixel_v;
+  if (!touches(f, x, y))
+    return 0;
+  double depth = p->perspective ? sqrt(dot(q, q)) : z;
+  if (!(depth > f->near_depth))
+    return 0;
+  *hit = (projected){index, weight, x, y, depth, u, v};
+  return 1;
+}
+
+static uint32_t find_in_cube(const projection *p, const double q[3], projected hits[3])
+{
+  const double *axis[3] = {p->axes.forward, p->axes.right, p->axes.up};
+  double along[3], size[3];
+  for (int i = 0; i < 3; i++) {
+    along[i] = dot(q, axis[i]);
+    size[i] = fabs(along[i]);
+  }
+  /* each face's share falls from 1 to 0 where its larger tangent goes from 1 - overlap to 1 + overlap */
+  double weight[3], sum = 0;
+  for (int i = 0; i < 3; i++) {
+    double other = fmax(size[(i + 1) % 3], size[(i + 2) % 3]);
+    if (other < size[i] * (1 - p->overlap)) {
+      uint32_t index = 2 * (uint32_t)i + (along[i] < 0);
+      return add_hit(p, index, q, 1, hits);
+    }
+    weight[i] = size[i] > 0 ? fmax(0, fmin(1, (1 + p->overlap - other / size[i]) / (2 * p->overlap))) : 0;
+    sum += weight[i];
+  }
+  uint32_t n = 0;
+  if (sum > 0)   /* false at the light itself */
+    for (uint32_t i = 0; i < 3; i++)
+      if (weight[i] > 0)
+        n += add_hit(p, 2 * i + (along[i] < 0), q, weight[i] / sum, hits + n);
+  return n;
+}
+
+uint32_t projection_find(const projection *p, const double point[3], projected hits[3])
+{
+  double q[3];
+  for (int i = 0; i < 3; i++)
+    q[i] = point[i] - p->origin[i];
+  if (p->count == MAX_FACES)
+    return find_in_cube(p, q, hits);
+  return p->count ? add_hit(p, 0, q, 1, hits) : 0;
+}
+
+void projection_ray(const projection *p, uint32_t index, double x, double y, dsm_ray *ray)
+{
+  const face *f = &p->faces[index];
+  double u = f->u0 + x * f->pixel_u, v = f->v0 + y * f->pixel_v;
+  ray->near_depth = f->near_depth;
+  ray->far_depth = f->far_depth;
+  if (p->perspective) {
+    for (int i = 0; i < 3; i++) {
+      ray->origin[i] = p->origin[i];
+      ray->direction[i] = u * f->axes.right[i] + v * f->axes.up[i] + f->axes.forward[i];
+    }
+    normalise(ray->direction);
+  }
+  else
+    for (int i = 0; i < 3; i++) {
+      ray->origin[i] = p->origin[i] + u * f->axes.right[i] + v * f->axes.up[i];
+      ray->direction[i] = f->axes.forward[i];
+    }
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/* The words of a deep_shadow { } block: the published table, and the checked values that a map is built with. */
+#ifndef DSM_CORE_SETTINGS_H
+#define DSM_CORE_SETTINGS_H
+
+#include "dsm.h"
+
+typedef enum { FILTER_BOX, FILTER_TRIANGLE, FILTER_GAUSSIAN } filter_kind;   /* in the order of the table's words */
+
+/* Indices into settings_table. */
+enum { WORD_RESOLUTION, WORD_SAMPLES, WORD_TOLERANCE, WORD_FILTER, WORD_BIAS, WORD_COUNT };
+
+#define SETTING_AUTOMATIC (-1.0)   /* of tolerance and bias, which are never negative */
+
+struct dsm_settings {
+  uint32_t resolution[2];   /* [1] is 0: square pixels, resolution[0] of them along the longer side */
+  uint32_t samples;         /* rays a pixel */
+  double tolerance;         /* or SETTING_AUTOMATIC */
+  filter_kind filter;
+  double filter_width;      /* full width of the filter's support in map pixels */
+  double bias;              /* scene units, or SETTING_AUTOMATIC */
+};
+
+extern const dsm_parameter settings_table[WORD_COUNT];
+
+void settings_defaults(dsm_settings *settings);
+/* The published functions; dsm.h says what they do. */
+dsm_settings *settings_create(void);
+dsm_result settings_set(dsm_settings *settings, uint32_t parameter, const char *choice, const double *numbers,
+                        uint32_t count, char *why, uint64_t why_size);
+void settings_destroy(dsm_settings *settings);
+
+#endif

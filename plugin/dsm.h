@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/*
+ * dsm.h - deep shadow maps behind one table of C functions.
+ *
+ * A renderer (the *host*) loads this library at run time, finds the one symbol `dsm_api`, and drives it
+ * through the table that the symbol holds. The library bakes a map of fractional visibility for one light by
+ * asking the host to trace light rays, and answers during shading how much of the light reaches a point.
+ * Lokovic & Veach, "Deep Shadow Maps", SIGGRAPH 2000 (LV below), is the method.
+ *
+ * RULES
+ *
+ * Versions    The host compares `abi` with DSM_ABI and `size` with the part of the table it knows before it
+ *             touches anything else. Tables and structures that carry a `size` only ever grow at the end.
+ * Threads     [any]  may be called from any thread, at the same time, for the same object.
+ *             [one]  one thread at a time for each object.
+ *             The library starts no threads and has no mutable globals.
+ * Results     Functions that can fail return a `dsm_result`. The sentence that explains a failure goes to
+ *             `dsm_host.report` on the calling thread, before the function returns.
+ * Ownership   create gives, destroy takes, destroy(NULL) does nothing. Nobody frees what the other allocated.
+ * Exceptions  None crosses this interface, in either direction.
+ * Numbers     All lengths are scene units, all colours linear. Transmittance is the share of light that passes:
+ *             1 is clear, 0 is opaque, one value for each of red, green and blue. NaN, negative depths and
+ *             transmittances outside [0,1] that a host reports are dropped or clamped as `dsm_sink` says,
+ *             counted, and reported once a map.
+ * Depth       Distance from the light's origin (DSM_LIGHT_POINT, DSM_LIGHT_SPOT) or from the light's plane
+ *             (DSM_LIGHT_PARALLEL), so that the faces of a cube meet without a seam.
+ * Determinism Samples are a hash of pixel and sample number. Any number of threads and any order of look-ups
+ *             bake the same bytes, as long as the host's `trace` gives the same events for the same ray.
+ */
+#ifndef DSM_H
+#define DSM_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define DSM_ABI 1u
+
+typedef int32_t dsm_result;
+enum {
+  DSM_OK = 0,
+  DSM_OUTSIDE = 1,    /* look-up: nothing in the map can shadow the point; visibility is 1 */
+  DSM_TRACE = 2,      /* look-up: the map has no answer here (light grows, or the tile failed): trace the ray */
+  DSM_CANCELLED = 3,  /* the host's `pause` asked to stop; the tile is absent again */
+  DSM_NO_MEMORY = 4,
+  DSM_INVALID = 5     /* an argument or a setting is out of its range */
+};
+
+/* ---- Settings: the words of a deep_shadow { } block ---------------------------------------------------- */
+
+typedef enum {
+  DSM_NUMBERS,  /* `min_count` to `max_count` numbers */
+  DSM_CHOICE    /* one of `choices`, followed by up to `max_count` numbers */
+} dsm_type;
+
+/* One row of the published table. Parser, documentation and tools all read this and nothing else. */
+typedef struct {
+  const char *name;
+  dsm_type type;
+  uint32_t min_count, max_count;
+  int32_t integral;              /* nonzero: numbers must be whole */
+  double low, high;              /* range of each number; `high` is DBL_MAX where there is no upper limit */
+  int32_t low_open, high_open;   /* nonzero: the range excludes `low`, `high` */
+  const char *choices;           /* DSM_CHOICE: the words, separated by single spaces; else NULL */
+  const char *default_text;      /* as the documentation prints it */
+  const char *meaning;           /* one line */
+} dsm_parameter;
+
+typedef struct dsm_settings dsm_settings;
+
+/* ---- The light, as the host describes it --------------------------------------------------------------- */
+
+typedef enum {
+  DSM_LIGHT_POINT,     /* from `origin`, in all directions */
+  DSM_LIGHT_SPOT,      /* from `origin`, within `cos_angle` of `direction` */
+  DSM_LIGHT_PARALLEL   /* along `direction`, from the plane through `origin` on; see `radius` */
+} dsm_light_kind;
+
+typedef struct { double low[3], high[3]; } dsm_box;   /* axis-aligned, low <= high, finite */
+
+typedef struct {
+  uint32_t size;
+  uint32_t kind;             /* dsm_light_kind */
+  double origin[3];
+  double direction[3];       /* unit length; not read for DSM_LIGHT_POINT */
+  double cos_angle;          /* DSM_LIGHT_SPOT: cosine of the half angle beyond which there is no light */
+  double radius;             /* DSM_LIGHT_PARALLEL: no light farther than this from the axis; 0: no such limit */
+  const dsm_box *casters;    /* one box for each finite object that casts a shadow; read by map_create only */
+  uint64_t caster_count;     /* 0: the map is all lit */
+} dsm_light;
+
+/* ---- What the host does for the library ---------------------------------------------------------------- */
+
+/* One light ray. Points of it are origin + depth * direction, near <= depth <= far. */
+typedef struct {
+  double origin[3];
+  double direction[3];   /* unit length, away from the light */
+  double near_depth, far_depth;
+} dsm_ray;
+
+/* Where `trace` puts what it finds. Grows; nothing is dropped for want of room. */
+typedef struct dsm_sink dsm_sink;
+
+typedef struct {
+  uint32_t size;
+  void *data;   /* handed to `report` */
+
+  /* [any worker, one thread a worker] Report all that dims each of the `count` rays between its two depths, in any
+   * order, to `sink` (sink_surface, sink_span, sink_mark). `tolerance` is the largest error of transmittance
+   * that matters: spans may be as long as light falls exponentially within them to that precision. A batch is
+   * a set of neighbouring rays of one light. Returns DSM_OK, DSM_CANCELLED or DSM_NO_MEMORY. */
+  dsm_result (*trace)(void *worker_data, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink);
+
+  /* Called often, at least every 20 ms, while the library works or waits. Nonzero asks it to give up. */
+  int32_t (*pause)(void *worker_data);
+
+  /* [any] One complete sentence for the user. `severity`: 0 note, 1 warning, 2 error. */
+  void (*report)(void *data, int32_t severity, const char *sentence);
+} dsm_host;
+
+/* ---- Maps, workers, look-ups ----------------------------------------------------------------------------- */
+
+typedef struct dsm_map dsm_map;         /* one light's map; tiles are baked when first needed */
+typedef struct dsm_worker dsm_worker;   /* one thread's scratch memory for one map */
+
+/* A surface around a point P stays below the plane through P with this normal, moved by `rise` towards the light. */
+typedef struct {
+  double normal[3];   /* unit length, on the light's side */
+  double rise;        /* scene units along the light ray, >= 0 */
+} dsm_plane;
+
+/* Where the light is wanted. A point on a surface must not be shadowed by that surface. Every plane given is a bound
+ * by itself on where the surface is within the filter's footprint around the point (a tangent plane for a smooth
+ * surface, one across the light for a small object); the library uses the one that needs the least bias. */
+typedef struct {
+  double point[3];
+  uint32_t plane_count;   /* 0: no surface here (media), or one that the map does not hold */
+  dsm_plane planes[2];
+} dsm_receiver;
+
+typedef struct {
+  uint32_t size;
+  uint32_t faces;
+  uint64_t tiles, tiles_baked, tiles_failed;
+  uint64_t pixels, pixels_baked, pixels_marked, pixels_coloured;
+  uint64_t rays, events, events_dropped, events_clamped;
+  uint64_t vertices_in;    /* of all averaged visibility functions, before compression */
+  uint64_t vertices;       /* stored */
+  uint64_t bytes;          /* held by tiles, bookkeeping included */
+  double near_depth, far_depth;
+  double bake_seconds;     /* of all workers, host's tracing included */
+  double trace_seconds;    /* the part of bake_seconds spent in host->trace */
+} dsm_statistics;
+
+typedef struct {
+  uint32_t abi;    /* DSM_ABI */
+  uint32_t size;   /* of this table, in bytes */
+  const char *version;
+
+  const dsm_parameter *parameters;   /* [any] */
+  uint32_t parameter_count;
+
+  /* Settings start at their defaults. settings_set checks against the table and returns DSM_INVALID, with a
+   * sentence that names the word and its range, without changing anything. `parameter` is an index. */
+  dsm_settings *(*settings_create)(void);                                     /* [any] NULL: out of memory */
+  dsm_result (*settings_set)(dsm_settings *settings, uint32_t parameter, const char *choice,
+                             const double *numbers, uint32_t count, char *why, uint64_t why_size); /* [one] */
+  void (*settings_destroy)(dsm_settings *settings);                           /* [one] */
+
+  /* Fits faces to the casters and lays out tiles; traces nothing yet. Settings and light are copied; `host` is
+   * copied too, and what it points to must outlive the map. */
+  dsm_result (*map_create)(const dsm_host *host, const dsm_light *light, const dsm_settings *settings,
+                           dsm_map **map);                                     /* [any] */
+  void (*map_destroy)(dsm_map *map);                                          /* [one] after all its workers */
+
+  dsm_result (*worker_create)(dsm_map *map, void *worker_data, dsm_worker **worker);   /* [any] */
+  void (*worker_destroy)(dsm_worker *worker);                                 /* [one] */
+
+  /* How much light reaches the receiver: `rgb` in [0,1], 1 is unshadowed. Bakes the tiles it needs, or waits for
+   * the thread that does. Filters the map over the pixels around the point (LV 3.4). `rgb` is set when the
+   * result is DSM_OK or DSM_OUTSIDE and untouched otherwise. */
+  dsm_result (*lookup)(dsm_worker *worker, const dsm_receiver *receiver, double rgb[3]);        /* [one] */
+
+  void (*statistics)(const dsm_map *map, dsm_statistics *out);                /* [any] out->size set by the caller */
+
+  /* For `trace`. Equal depths keep the order of the calls. DSM_NO_MEMORY is final for the batch.
+   * An event outside [near, far] is moved to the nearer end; one with a NaN or infinite number is dropped;
+   * transmittance below 0 becomes 0, above 1 it marks the ray (see sink_mark) and becomes 1. */
+  dsm_result (*sink_surface)(dsm_sink *sink, uint32_t ray, double depth, const double transmittance[3]);
+  dsm_result (*sink_span)(dsm_sink *sink, uint32_t ray, double front, double back, const double transmittance[3]);
+  /* The ray's light can grow with depth (caustics, colours above 1). The map does not store such pixels. */
+  dsm_result (*sink_mark)(dsm_sink *sink, uint32_t ray);
+} dsm_api_table;
+
+/* The one exported symbol. */
+#ifndef DSM_IMPORT
+extern const dsm_api_table dsm_api;
+#endif
+
+#ifdef __cplusplus
+}
+#endif
+#endif
