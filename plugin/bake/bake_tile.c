@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "bake/bake_tile.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "bake/pack_tile.h"
+#include "core/compress.h"
+#include "core/transmittance.h"
+
+enum { BATCH_RAYS = 4096 };   /* enough for a host to sort its objects by; a quarter of a megabyte of rays */
+
+/* The automatic tolerance is not below this: half of an 8-bit step. */
+static const double LEAST_TOLERANCE = 0.002;
+
+static double seconds(void)
+{
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int paused(const bake_job *job)
+{
+  return job->host->pause && job->host->pause(job->host_data);
+}
+
+/* The smallest tolerance that a pixel of this map can come to have: what tracing has to be good for. */
+static double finest_tolerance(const dsm_settings *settings)
+{
+  return settings->tolerance >= 0 ? settings->tolerance : LEAST_TOLERANCE;
+}
+
+/* A merge in transmittance_build may already have cost this much, of a ray with volume spans. */
+static double spent_on_rays(const dsm_settings *settings)
+{
+  return fmax(finest_tolerance(settings) / 4, 1e-6);
+}
+
+static dsm_result make_room(bake_scratch *s, uint32_t samples, uint32_t rays)
+{
+  if (s->room_samples < samples) {
+    free(s->first);
+    free(s->weights);
+    free(s->order);
+    s->room_samples = 0;
+    s->first = malloc((samples + 1) * sizeof *s->first);
+    s->weights = malloc(samples * sizeof *s->weights);
+    s->order = malloc(samples * sizeof *s->order);
+    if (!s->first || !s->weights || !s->order)
+      return DSM_NO_MEMORY;
+    s->room_samples = samples;
+    pixel_sample_pairs(samples, s->order);
+    for (uint32_t i = 0; i < samples; i++)
+      s->weights[i] = 1.0 / samples;
+  }
+  if (s->room_rays < rays) {
+    free(s->rays);
+    s->room_rays = 0;
+    s->rays = malloc(rays * sizeof *s->rays);
+    if (!s->rays)
+      return DSM_NO_MEMORY;
+    s->room_rays = rays;
+  }
+  return DSM_OK;
+}
+
+static void make_rays(const bake_job *job, uint32_t face_index, uint32_t x, uint32_t y, dsm_ray *rays)
+{
+  pixel_filter filter = {job->settings->filter, job->settings->filter_width};
+  pixel_seed seed = pixel_sample_seed(face_index, x, y);
+  for (uint32_t i = 0; i < job->settings->samples; i++) {
+    double offset[2];
+    pixel_sample_offset(&filter, seed, i, offset);
+    projection_ray(job->projection, face_index, x + 0.5 + offset[0], y + 0.5 + offset[1], &rays[i]);
+  }
+}
+
+/* Transmittances of the pixel's rays into s->transmittances, s->first. Tells whether any event is there, and whether any
+ * is a volume span. */
+static dsm_result build_rays(const bake_job *job, bake_scratch *s, uint32_t first_ray, int *dimmed, int *volume)
+{
+  uint32_t samples = job->settings->samples;
+  double tolerance = finest_tolerance(job->settings);
+  *dimmed = s->sink.first[first_ray] < s->sink.first[first_ray + samples];
+  *volume = 0;
+  if (!*dimmed)
+    return DSM_OK;
+  s->transmittances.count = 0;
+  for (uint32_t i = 0; i < samples; i++) {
+    size_t begin = s->sink.first[first_ray + i], end = s->sink.first[first_ray + i + 1];
+    for (size_t k = begin; k < end && !*volume; k++)
+      *volume = s->sink.ordered[k].back > s->sink.ordered[k].front;
+    s->first[i] = s->transmittances.count;
+    dsm_result result = transmittance_build(s->sink.ordered + begin, end - begin, tolerance, &s->transmittances);
+    if (result != DSM_OK)
+      return result;
+  }
+  s->first[samples] = s->transmittances.count;
+  return DSM_OK;
+}
+
+static int is_grey(const vertices *v)
+{
+  for (size_t i = 0; i < v->count; i++)
+    if (!rgb_is_grey(v->data[i].v))
+      return 0;
+  return 1;
+}
+
+/* Averages, compresses and keeps one pixel of the batch. */
+static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, uint32_t first_ray, baked_pixel *pixel,
+                             tile_tally *tally)
+{
+  uint32_t samples = job->settings->samples;
+  *pixel = (baked_pixel){s->stored.count, 0, 0, 0};
+  for (uint32_t i = 0; i < samples; i++)
+    if (s->sink.marked[first_ray + i]) {
+      pixel->marked = 1;
+      return DSM_OK;
+    }
+  int dimmed, volume;
+  dsm_result result = build_rays(job, s, first_ray, &dimmed, &volume);
+  if (result != DSM_OK || !dimmed)
+    return result;
+  average_input in = {s->transmittances.data, s->first, s->weights, samples};
+  s->average.count = 0;
+  result = average_sweep(&in, &s->heap, &s->average);
+  if (result != DSM_OK)
+    return result;
+  double tolerance = job->settings->tolerance;
+  if (tolerance < 0)
+    result = pixel_tolerance(&in, s->order, &s->average, LEAST_TOLERANCE, &s->noise, &tolerance);
+  if (result != DSM_OK)
+    return result;
+  if (volume)
+    tolerance = fmax(0, tolerance - spent_on_rays(job->settings));
+  pixel->coloured = !is_grey(&s->average);
+  result = compress_greedy(s->average.data, s->average.count, pixel->coloured ? 3 : 1, tolerance, &s->stored);
+  pixel->count = s->stored.count - pixel->first;
+  tally->vertices_in += s->average.count;
+  return result;
+}
+
+/* The part of a tile that lies on its face, in pixels. */
+typedef struct { uint32_t x, y, across, up; } tile_part;
+
+static tile_part part_on_face(const face *f, const tile_key *key)
+{
+  tile_part p = {key->x * TILE_SIDE, key->y * TILE_SIDE, TILE_SIDE, TILE_SIDE};
+  if (p.x + p.across > f->width)
+    p.across = f->width - p.x;
+  if (p.y + p.up > f->height)
+    p.up = f->height - p.y;
+  return p;
+}
+
+static dsm_result trace_batch(const bake_job *job, bake_scratch *s, uint32_t rays, tile_tally *tally)
+{
+  dsm_result result = sink_begin(&s->sink, s->rays, rays);
+  if (result != DSM_OK)
+    return result;
+  double start = seconds();
+  result = job->host->trace(job->host_data, s->rays, rays, finest_tolerance(job->settings), &s->sink);
+  tally->trace_seconds += seconds() - start;
+  tally->rays += rays;
+  tally->events += s->sink.count;
+  return result == DSM_OK ? sink_order(&s->sink) : result;
+}
+
+static dsm_result bake_pixels(const bake_job *job, bake_scratch *s, const tile_key *key, tile_tally *tally)
+{
+  tile_part part = part_on_face(&job->projection->faces[key->face], key);
+  uint32_t samples = job->settings->samples, total = part.across * part.up;
+  uint32_t batch = samples < BATCH_RAYS ? BATCH_RAYS / samples : 1;
+  if (batch > total)
+    batch = total;
+  dsm_result result = make_room(s, samples, batch * samples);
+  s->stored.count = 0;
+  for (int i = 0; i < TILE_PIXELS; i++)
+    s->pixels[i] = (baked_pixel){0, 0, 0, 0};
+
+  for (uint32_t done = 0; result == DSM_OK && done < total; done += batch) {
+    uint32_t count = batch < total - done ? batch : total - done;
+    for (uint32_t i = 0; i < count; i++)
+      make_rays(job, key->face, part.x + (done + i) % part.across, part.y + (done + i) / part.across,
+                s->rays + (size_t)i * samples);
+    result = paused(job) ? DSM_CANCELLED : trace_batch(job, s, count * samples, tally);
+    for (uint32_t i = 0; i < count && result == DSM_OK; i++) {
+      uint32_t place = (done + i) / part.across * TILE_SIDE + (done + i) % part.across;
+      result = paused(job) ? DSM_CANCELLED : bake_pixel(job, s, i * samples, &s->pixels[place], tally);
+    }
+  }
+  tally->pixels += total;
+  return result;
+}
+
+dsm_result bake_tile(const bake_job *job, bake_scratch *s, const tile_key *key, const tile **out, tile_tally *tally)
+{
+  double start = seconds();
+  uint64_t dropped = s->sink.dropped, clamped = s->sink.clamped;
+  *out = NULL;
+  dsm_result result = bake_pixels(job, s, key, tally);
+  if (result == DSM_OK)
+    result = pack_tile(s->pixels, &s->stored, out);
+  if (result == DSM_OK)
+    for (int i = 0; i < TILE_PIXELS; i++) {
+      tally->pixels_marked += s->pixels[i].marked != 0;
+      tally->pixels_coloured += s->pixels[i].coloured != 0;
+      tally->vertices += s->pixels[i].count;
+    }
+  if (result == DSM_OK && (*out)->kind == TILE_STORED)
+    tally->bytes += (*out)->size;
+  tally->events_dropped += s->sink.dropped - dropped;
+  tally->events_clamped += s->sink.clamped - clamped;
+  tally->bake_seconds += seconds() - start;
+  return result;
+}
+
+void bake_scratch_free(bake_scratch *s)
+{
+  free(s->rays);
+  free(s->first);
+  free(s->weights);
+  free(s->order);
+  sink_free(&s->sink);
+  vertices_free(&s->transmittances);
+  vertices_free(&s->average);
+  vertices_free(&s->stored);
+  average_free(&s->heap);
+  tolerance_free(&s->noise);
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/* A pixel between compression and packing: a stretch of its tile's vertices. */
+#ifndef DSM_BAKE_BAKED_PIXEL_H
+#define DSM_BAKE_BAKED_PIXEL_H
+
+#include <stddef.h>
+
+typedef struct {
+  size_t first, count;    /* of its vertices */
+  int coloured, marked;   /* channels differ; light can grow (then no vertices) */
+} baked_pixel;
+
+#endif

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "bake/baker.h"
+
+#include <stdlib.h>
+
+#include "bake/bake_tile.h"
+
+typedef struct {
+  tile_maker maker;   /* first: a tile_maker of ours is the baker that begins with it */
+  bake_job job;
+  bake_scratch scratch;
+} baker;
+
+static dsm_result make(tile_maker *maker, const tile_key *key, const tile **out, tile_tally *tally)
+{
+  baker *b = (baker *)maker;
+  return bake_tile(&b->job, &b->scratch, key, out, tally);
+}
+
+static void destroy(tile_maker *maker)
+{
+  baker *b = (baker *)maker;
+  bake_scratch_free(&b->scratch);
+  free(b);
+}
+
+dsm_result baker_worker_create(dsm_map *map, void *host_data, dsm_worker **worker)
+{
+  *worker = NULL;
+  baker *b = calloc(1, sizeof *b);
+  if (!b)
+    return DSM_NO_MEMORY;
+  b->maker = (tile_maker){make, destroy};
+  b->job = (bake_job){&map->host, host_data, &map->projection, &map->settings};
+  dsm_result result = worker_create(map, host_data, &b->maker, worker);
+  if (result != DSM_OK)
+    destroy(&b->maker);
+  return result;
+}

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/* How much light reaches a receiver: the four pixels around it, each read at its own biased depth (LV 3.4). */
+#ifndef DSM_MAP_LOOKUP_H
+#define DSM_MAP_LOOKUP_H
+
+#include "map/worker.h"
+
+/* Published; see dsm.h. No lock and no allocation once the tiles are there. */
+dsm_result map_lookup(dsm_worker *worker, const dsm_receiver *receiver, double out[3]);
+
+#endif

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "map/map.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/face_fit.h"
+
+/* A filter's support is enlarged by this before the receiver's plane is searched for its nearest depth: receivers are
+ * rarely quite flat, and an eighth of a pixel on each side costs a contact shadow nothing visible. */
+static const double FOOTPRINT_SAFETY = 1.25;
+
+static const double LARGEST = 1e150;   /* squares of lengths must stay finite */
+
+static int valid_vector(const double v[3])
+{
+  for (int i = 0; i < 3; i++)
+    if (!(fabs(v[i]) <= LARGEST))
+      return 0;
+  return 1;
+}
+
+/* The sentence that says what is wrong with the light, or NULL. Makes the direction unit length. */
+static const char *check_light(dsm_light *light)
+{
+  if (light->kind > DSM_LIGHT_PARALLEL)
+    return "The deep shadow map's light is of an unknown kind.";
+  if (!valid_vector(light->origin))
+    return "The deep shadow map's light has no finite origin.";
+  if (light->kind != DSM_LIGHT_POINT) {
+    const double *d = light->direction;
+    double length = valid_vector(d) ? sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) : 0;
+    if (!(length > 0))
+      return "The deep shadow map's light has no direction.";
+    for (int i = 0; i < 3; i++)
+      light->direction[i] /= length;
+  }
+  if (light->kind == DSM_LIGHT_SPOT && !(light->cos_angle >= -1 && light->cos_angle <= 1))
+    return "The deep shadow map's light has a cosine of its half angle outside -1 to 1.";
+  if (light->kind == DSM_LIGHT_PARALLEL && !(light->radius >= 0))
+    return "The deep shadow map's light has a negative radius.";
+  if (light->caster_count && !light->casters)
+    return "The deep shadow map was given a number of casters but not their boxes.";
+  for (uint64_t k = 0; k < light->caster_count; k++) {
+    const dsm_box *b = &light->casters[k];
+    if (!valid_vector(b->low) || !valid_vector(b->high)
+        || b->low[0] > b->high[0] || b->low[1] > b->high[1] || b->low[2] > b->high[2])
+      return "The deep shadow map was given a caster without a finite, ordered box.";
+  }
+  return NULL;
+}
+
+void map_report(const dsm_map *map, int32_t severity, const char *sentence)
+{
+  if (map->host.report)
+    map->host.report(map->host.data, severity, sentence);
+}
+
+static dsm_result refuse(const dsm_host *host, dsm_result result, const char *sentence)
+{
+  if (host->report)
+    host->report(host->data, 2, sentence);
+  return result;
+}
+
+dsm_result map_create(const dsm_host *host, const dsm_light *light, const dsm_settings *settings, dsm_map **out)
+{
+  if (!out)
+    return DSM_INVALID;
+  *out = NULL;
+  if (!host || host->size < sizeof *host || !host->trace)
+    return DSM_INVALID;   /* too short to hold `report`, or of no use */
+  if (!light || light->size < sizeof *light)
+    return refuse(host, DSM_INVALID, "The host's description of the deep shadow map's light is too short.");
+  dsm_light checked = *light;
+  const char *wrong = check_light(&checked);
+  if (wrong)
+    return refuse(host, DSM_INVALID, wrong);
+
+  dsm_map *map = calloc(1, sizeof *map);
+  if (!map)
+    return refuse(host, DSM_NO_MEMORY, "There is no memory for a deep shadow map.");
+  map->host = *host;
+  if (settings)
+    map->settings = *settings;
+  else
+    settings_defaults(&map->settings);
+  map->footprint = 0.5 * map->settings.filter_width * FOOTPRINT_SAFETY;
+  face_fit(&checked, map->settings.resolution, map->settings.filter_width, &map->projection);
+  if (tile_store_create(&map->store, &map->projection) != DSM_OK) {
+    free(map);
+    return refuse(host, DSM_NO_MEMORY, "There is no memory for the tile table of a deep shadow map.");
+  }
+  *out = map;
+  return DSM_OK;
+}
+
+void map_destroy(dsm_map *map)
+{
+  if (!map)
+    return;
+  tile_store_destroy(&map->store);
+  free(map);
+}
+
+void map_count_tile(dsm_map *map, const tile_tally *tally, int failed)
+{
+  int tell_events = 0, tell_failure = 0;
+  pthread_mutex_lock(&map->store.mutex);
+  tile_tally *sum = &map->tally;
+  sum->pixels += tally->pixels;
+  sum->pixels_marked += tally->pixels_marked;
+  sum->pixels_coloured += tally->pixels_coloured;
+  sum->rays += tally->rays;
+  sum->events += tally->events;
+  sum->events_dropped += tally->events_dropped;
+  sum->events_clamped += tally->events_clamped;
+  sum->vertices_in += tally->vertices_in;
+  sum->vertices += tally->vertices;
+  sum->bytes += tally->bytes;
+  sum->bake_seconds += tally->bake_seconds;
+  sum->trace_seconds += tally->trace_seconds;
+  if (failed) {
+    map->tiles_failed++;
+    tell_failure = !map->told_failure;
+    map->told_failure = 1;
+  }
+  else
+    map->tiles_baked++;
+  if (tally->events_dropped || tally->events_clamped) {
+    tell_events = !map->told_bad_events;
+    map->told_bad_events = 1;
+  }
+  pthread_mutex_unlock(&map->store.mutex);
+
+  if (tell_events) {
+    char text[200];
+    snprintf(text, sizeof text, "A deep shadow map was given events with impossible numbers; in the first such tile "
+             "%llu were dropped and %llu corrected.", (unsigned long long)tally->events_dropped,
+             (unsigned long long)tally->events_clamped);
+    map_report(map, 1, text);
+  }
+  if (tell_failure)
+    map_report(map, 1, "A tile of a deep shadow map could not be baked (is there too little memory?); shadows there "
+               "are ray-traced.");
+}
+
+void map_statistics(const dsm_map *map, dsm_statistics *out)
+{
+  dsm_statistics s;
+  memset(&s, 0, sizeof s);
+  const projection *p = &map->projection;
+  s.near_depth = INFINITY;
+  s.bytes = sizeof *map;
+  for (uint32_t i = 0; i < p->count; i++) {
+    const face *f = &p->faces[i];
+    if (f->width == 0)
+      continue;
+    const tile_grid *grid = &map->store.grids[i];
+    s.faces++;
+    s.pixels += (uint64_t)f->width * f->height;
+    s.tiles += (uint64_t)grid->across * grid->up;
+    s.near_depth = fmin(s.near_depth, f->near_depth);
+    s.far_depth = fmax(s.far_depth, f->far_depth);
+  }
+  if (s.faces == 0)
+    s.near_depth = 0;
+  s.bytes += s.tiles * sizeof *map->store.grids[0].slots;
+
+  pthread_mutex_t *mutex = (pthread_mutex_t *)(size_t)&map->store.mutex;   /* const towards the host only */
+  pthread_mutex_lock(mutex);
+  s.tiles_baked = map->tiles_baked;
+  s.tiles_failed = map->tiles_failed;
+  s.pixels_baked = map->tally.pixels;
+  s.pixels_marked = map->tally.pixels_marked;
+  s.pixels_coloured = map->tally.pixels_coloured;
+  s.rays = map->tally.rays;
+  s.events = map->tally.events;
+  s.events_dropped = map->tally.events_dropped;
+  s.events_clamped = map->tally.events_clamped;
+  s.vertices_in = map->tally.vertices_in;
+  s.vertices = map->tally.vertices;
+  s.bytes += map->tally.bytes;
+  s.bake_seconds = map->tally.bake_seconds;
+  s.trace_seconds = map->tally.trace_seconds;
+  pthread_mutex_unlock(mutex);
+
+  s.size = out->size < sizeof s ? out->size : (uint32_t)sizeof s;
+  if (s.size >= sizeof s.size)
+    memcpy(out, &s, s.size);
+}

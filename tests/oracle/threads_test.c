@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/* Many threads bake one map on demand: the bytes do not depend on how many there are, on their order, or on stops. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "map/worker.h"
+#include "oracle.h"
+
+enum { SHAPES = 60, MOST_THREADS = 8 };
+
+typedef struct {
+  world w;              /* first: trace_world is handed this */
+  rng random;
+  int stops_often;
+  dsm_map *map;
+  uint64_t cancelled, odd_results;
+} thread_host;
+
+static shape scene[SHAPES];
+
+static void make_scene(void) {
+  rng r = rng_seeded(42);
+  for (int i = 0; i < SHAPES - 1; ++i)
+    scene[i] = sphere_at(rng_between(&r, -1, 1), rng_between(&r, -1, 1), rng_between(&r, 3, 5), 0.1, i % 3 ? 0 : 0.5);
+  scene[SHAPES - 1] = fog_in((dsm_box){{-1, -1, 3}, {1, 1, 5}}, 0.3, 0.2, 0.1, 1);
+}
+
+static int32_t pause_sometimes(void *data) {
+  thread_host *host = data;
+  return host->stops_often && rng_below(&host->random, 400) == 0;
+}
+
+/* Every tile's middle, in an order of the thread's own, until each has been answered. */
+static void *look_everywhere(void *data) {
+  thread_host *host = data;
+  dsm_worker *worker = NULL;
+  if (dsm_api.worker_create(host->map, host, &worker) != DSM_OK) {
+    ++host->odd_results;
+    return NULL;
+  }
+  const projection *p = &host->map->projection;
+  const face *f = &p->faces[0];
+  uint32_t across = host->map->store.grids[0].across, count = across * host->map->store.grids[0].up;
+  uint32_t *order = malloc(count * sizeof *order);
+  for (uint32_t i = 0; i < count; ++i) {
+    uint32_t k = rng_below(&host->random, i + 1);
+    order[i] = order[k];
+    order[k] = i;
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    double x = fmin((order[i] % across + 0.5) * TILE_SIDE, f->width - 1), y = fmin((order[i] / across + 0.5) * TILE_SIDE, f->height - 1);
+    dsm_ray ray;
+    projection_ray(p, 0, x, y, &ray);
+    dsm_receiver at = {.plane_count = 0};
+    for (int c = 0; c < 3; ++c) at.point[c] = ray.origin[c] + ray.far_depth * ray.direction[c];
+    double rgb[3];
+    dsm_result result;
+    while ((result = dsm_api.lookup(worker, &at, rgb)) == DSM_CANCELLED) ++host->cancelled;
+    host->odd_results += result != DSM_OK;
+  }
+  free(order);
+  dsm_api.worker_destroy(worker);
+  return NULL;
+}
+
+static dsm_map *bake_with(int threads, int stops_often, uint64_t seed) {
+  world w = {.shapes = scene, .count = SHAPES};
+  dsm_box boxes[SHAPES];
+  for (int i = 0; i < SHAPES; ++i) boxes[i] = scene[i].box;
+  dsm_light light = spot_at(0, 0, 0, 0, 0, 1, 30);
+  light.casters = boxes;
+  light.caster_count = SHAPES;
+  dsm_host host = host_of(&w);
+  host.pause = pause_sometimes;
+  dsm_settings *settings = settings_of(WORDS("resolution 150", "samples 9", "filter gaussian 2"));
+  dsm_map *map = NULL;
+  assert_int_equal(dsm_api.map_create(&host, &light, settings, &map), DSM_OK);
+  dsm_api.settings_destroy(settings);
+  thread_host hosts[MOST_THREADS];
+  pthread_t ids[MOST_THREADS];
+  uint64_t cancelled = 0;
+  for (int i = 0; i < threads; ++i) {
+    hosts[i] = (thread_host){.w = w, .random = rng_seeded(seed + (uint64_t)i), .stops_often = stops_often, .map = map};
+    assert_int_equal(pthread_create(&ids[i], NULL, look_everywhere, &hosts[i]), 0);
+  }
+  for (int i = 0; i < threads; ++i) {
+    pthread_join(ids[i], NULL);
+    assert_int_equal(hosts[i].odd_results, 0);
+    cancelled += hosts[i].cancelled;
+  }
+  if (stops_often) assert_true(cancelled > 0);
+  dsm_statistics got = {.size = sizeof got};
+  dsm_api.statistics(map, &got);
+  assert_int_equal(got.tiles_baked, got.tiles);
+  assert_int_equal(got.pixels_baked, got.pixels);
+  assert_int_equal(got.rays, 9 * got.pixels);
+  return map;
+}
+
+static void same_bytes(const dsm_map *a, const dsm_map *b) {
+  size_t stored = 0;
+  assert_int_equal(a->store.grid_count, b->store.grid_count);
+  for (uint32_t y = 0; y < a->store.grids[0].up; ++y)
+    for (uint32_t x = 0; x < a->store.grids[0].across; ++x) {
+      tile_key key = {0, 0, x, y};
+      const tile *s = tile_store_peek(&a->store, &key), *t = tile_store_peek(&b->store, &key);
+      assert_non_null(s);
+      assert_non_null(t);
+      assert_int_equal(s->size, t->size);
+      assert_memory_equal(s, t, s->size);
+      stored += s->kind == TILE_STORED;
+    }
+  assert_true(stored > 50);
+}
+
+static void any_number_of_threads(void **state) {
+  (void)state;
+  dsm_map *one = bake_with(1, 0, 1);
+  for (int threads = 2; threads <= MOST_THREADS; threads += threads < 4 ? 1 : 4) {
+    dsm_map *many = bake_with(threads, 0, 100u * (uint64_t)threads);
+    same_bytes(one, many);
+    dsm_api.map_destroy(many);
+  }
+  dsm_api.map_destroy(one);
+}
+
+static void stopped_and_resumed(void **state) {
+  (void)state;
+  dsm_map *one = bake_with(1, 0, 1);
+  for (int threads = 1; threads <= 4; threads += 3) {
+    dsm_map *many = bake_with(threads, 1, 7);
+    same_bytes(one, many);
+    dsm_api.map_destroy(many);
+  }
+  dsm_api.map_destroy(one);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(any_number_of_threads),
+    cmocka_unit_test(stopped_and_resumed),
+  };
+  make_scene();
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
