@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+
+#include <algorithm>
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "backend/interior/interior.h"
+#include "backend/interior/media.h"
+#include "backend/math/vector.h"
+#include "backend/scene/objects.h"
+#include "backend/scene/scene.h"
+#include "backend/shape/csg.h"
+#include "backend/shadow/shadowcasters.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+namespace
+{
+
+const unsigned int kLeafObjects = 4;
+const unsigned int kMostOutsized = 16;
+
+/// A caster this many times larger than all smaller ones together stays out of the maps.
+const double kOutsizedFactor = 10.0;
+
+/// POV-Ray keeps boxes in floats and lets infinite objects have a box of this order.
+const double kInfiniteLength = 1.0e9;
+
+bool BoxOf(const ObjectBase *object, dsm_box& box)
+{
+	for(int i = 0; i < 3; i++)
+	{
+		const double low = object->BBox.Lower_Left[i];
+		const double length = object->BBox.Lengths[i];
+
+		// not (x < y) also catches NaN
+		if(!(length < kInfiniteLength) || !(fabs(low) < kInfiniteLength))
+			return false;
+
+		const double slack = 1.0e-6 * (fabs(low) + length) + 1.0e-9; // of float boxes
+		box.low[i] = low - slack;
+		box.high[i] = low + length + slack;
+	}
+	return true;
+}
+
+double HalfDiagonal(const dsm_box& box)
+{
+	double sum = 0.0;
+	for(int i = 0; i < 3; i++)
+		sum += Sqr(box.high[i] - box.low[i]);
+	return 0.5 * sqrt(sum);
+}
+
+void Include(dsm_box& box, const dsm_box& other)
+{
+	for(int i = 0; i < 3; i++)
+	{
+		box.low[i] = min(box.low[i], other.low[i]);
+		box.high[i] = max(box.high[i], other.high[i]);
+	}
+}
+
+bool Dims(const Interior *interior)
+{
+	if(interior == NULL)
+		return false;
+	if((interior->Fade_Power > 0.0) && (fabs(interior->Fade_Distance) > EPSILON))
+		return true;
+	for(vector<Media>::const_iterator media(interior->media.begin()); media != interior->media.end(); media++)
+		if(media->use_extinction)
+			return true;
+	return false;
+}
+
+/// Whether an object, or a part of it, takes light from its inside.
+bool HasVolume(const ObjectBase *object)
+{
+	if(Dims(object->interior))
+		return true;
+	if(object->Type & IS_COMPOUND_OBJECT)
+	{
+		const CompoundObject *compound = static_cast<const CompoundObject *>(object);
+		for(vector<ObjectPtr>::const_iterator child(compound->children.begin()); child != compound->children.end(); child++)
+			if(HasVolume(*child))
+				return true;
+	}
+	return false;
+}
+
+struct LargerFirst
+{
+	const vector<double>& size;
+	explicit LargerFirst(const vector<double>& s) : size(s) { }
+	bool operator()(unsigned int a, unsigned int b) const { return (size[a] != size[b]) ? (size[a] > size[b]) : (a < b); }
+};
+
+struct CentreLess
+{
+	const vector<dsm_box>& boxes;
+	int axis;
+	CentreLess(const vector<dsm_box>& b, int a) : boxes(b), axis(a) { }
+	double Centre(unsigned int i) const { return boxes[i].low[axis] + boxes[i].high[axis]; }
+	bool operator()(unsigned int a, unsigned int b) const { return (Centre(a) != Centre(b)) ? (Centre(a) < Centre(b)) : (a < b); }
+};
+
+}
+
+ShadowCasters::ShadowCasters(const SceneData& scene) : hasVolumes(false), hasUnmappedVolumes(false)
+{
+	for(vector<ObjectPtr>::const_iterator i(scene.objects.begin()); i != scene.objects.end(); i++)
+	{
+		dsm_box box;
+
+		// a light stands for its looks_like object, which never casts a shadow
+		if(Test_Flag(*i, NO_SHADOW_FLAG) || ((*i)->Type & LIGHT_SOURCE_OBJECT))
+			continue;
+
+		if(BoxOf(*i, box))
+		{
+			objects.push_back(*i);
+			boxes.push_back(box);
+		}
+		else
+			unmapped.push_back(*i);
+	}
+
+	SplitOffOutsized();
+
+	for(vector<ObjectPtr>::const_iterator i(objects.begin()); i != objects.end(); i++)
+		hasVolumes = hasVolumes || HasVolume(*i);
+	for(vector<ObjectPtr>::const_iterator i(unmapped.begin()); i != unmapped.end(); i++)
+		hasUnmappedVolumes = hasUnmappedVolumes || HasVolume(*i);
+
+	for(unsigned int i = 0; i < objects.size(); i++)
+		order.push_back(i);
+	if(!objects.empty())
+	{
+		nodes.reserve(objects.size());
+		Build(0, objects.size());
+	}
+}
+
+/// A floor of 10,000 units with a few objects on it, or a sky around everything, would make the rest of the scene one
+/// pixel of the map. Such objects are few and simple: the look-up tests them instead.
+void ShadowCasters::SplitOffOutsized()
+{
+	vector<unsigned int> bySize;
+	vector<double> size;
+
+	for(unsigned int i = 0; i < boxes.size(); i++)
+	{
+		bySize.push_back(i);
+		size.push_back(HalfDiagonal(boxes[i]));
+	}
+	std::sort(bySize.begin(), bySize.end(), LargerFirst(size));
+
+	// from the small end: the union of all casters smaller than the one looked at
+	unsigned int outsized = 0;
+	dsm_box rest;
+	for(unsigned int i = bySize.size(); i-- > 1; )
+	{
+		if(i + 1 == bySize.size())
+			rest = boxes[bySize[i]];
+		else
+			Include(rest, boxes[bySize[i]]);
+
+		if((i <= kMostOutsized) && (size[bySize[i - 1]] > kOutsizedFactor * HalfDiagonal(rest)) && !HasVolume(objects[bySize[i - 1]]))
+			outsized = max(outsized, i);
+	}
+
+	for(unsigned int i = 0; i < outsized; i++)
+		if(HasVolume(objects[bySize[i]]))
+			return; // it has to be in the map, and then the others may as well
+
+	vector<bool> out(boxes.size(), false);
+	for(unsigned int i = 0; i < outsized; i++)
+		out[bySize[i]] = true;
+
+	vector<ObjectPtr> keptObjects;
+	vector<dsm_box> keptBoxes;
+	for(unsigned int i = 0; i < boxes.size(); i++)
+	{
+		if(out[i])
+			unmapped.push_back(objects[i]);
+		else
+		{
+			keptObjects.push_back(objects[i]);
+			keptBoxes.push_back(boxes[i]);
+		}
+	}
+	objects.swap(keptObjects);
+	boxes.swap(keptBoxes);
+}
+
+/// Median split along the longest axis of the boxes' centres.
+unsigned int ShadowCasters::Build(unsigned int first, unsigned int count)
+{
+	const unsigned int index = nodes.size();
+	Node node;
+	dsm_box centres;
+
+	node.box = boxes[order[first]];
+	for(int axis = 0; axis < 3; axis++)
+		centres.low[axis] = centres.high[axis] = node.box.low[axis] + node.box.high[axis];
+	for(unsigned int i = first + 1; i < first + count; i++)
+	{
+		Include(node.box, boxes[order[i]]);
+		for(int axis = 0; axis < 3; axis++)
+		{
+			const double centre = boxes[order[i]].low[axis] + boxes[order[i]].high[axis];
+			centres.low[axis] = min(centres.low[axis], centre);
+			centres.high[axis] = max(centres.high[axis], centre);
+		}
+	}
+
+	node.first = first;
+	node.count = count;
+	node.left = node.right = 0;
+	nodes.push_back(node);
+	if(count <= kLeafObjects)
+		return index;
+
+	int axis = 0;
+	for(int i = 1; i < 3; i++)
+		if(centres.high[i] - centres.low[i] > centres.high[axis] - centres.low[axis])
+			axis = i;
+
+	const unsigned int half = count / 2;
+	std::nth_element(order.begin() + first, order.begin() + first + half, order.begin() + first + count, CentreLess(boxes, axis));
+
+	const unsigned int left = Build(first, half);
+	const unsigned int right = Build(first + half, count - half);
+	nodes[index].count = 0;
+	nodes[index].left = left;
+	nodes[index].right = right;
+	return index;
+}
+
+bool ShadowCasters::IsUnmapped(const ObjectBase *object) const
+{
+	for(vector<ObjectPtr>::const_iterator i(unmapped.begin()); i != unmapped.end(); i++)
+		if(*i == object)
+			return true;
+	return false;
+}
+
+void ShadowCasters::Containing(const Vector3d& point, TraceThreadData *thread, vector<ObjectPtr>& out) const
+{
+	for(unsigned int i = 0; i < objects.size(); i++)
+	{
+		const dsm_box& box = boxes[i];
+		if((point[X] >= box.low[X]) && (point[X] <= box.high[X]) && (point[Y] >= box.low[Y]) && (point[Y] <= box.high[Y]) &&
+		   (point[Z] >= box.low[Z]) && (point[Z] <= box.high[Z]) && (objects[i]->interior != NULL) && objects[i]->Inside(*point, thread))
+			out.push_back(objects[i]);
+	}
+}
+
+ShadowCasters::Walk::Walk(const ShadowCasters& c, const dsm_ray& r) : casters(c), ray(r), leafItem(0), leafEnd(0)
+{
+	for(int i = 0; i < 3; i++)
+		inverse[i] = 1.0 / ray.direction[i];
+	if(!casters.nodes.empty())
+		Push(0);
+}
+
+/// Slabs in double, however far away the light is. A direction along a face gives infinities of the right sign; a
+/// NaN (an origin on the face as well) leaves that slab out of account.
+bool ShadowCasters::Walk::Cross(const dsm_box& box, double& enter, double& leave) const
+{
+	enter = ray.near_depth;
+	leave = ray.far_depth;
+	for(int i = 0; i < 3; i++)
+	{
+		double a = (box.low[i] - ray.origin[i]) * inverse[i];
+		double b = (box.high[i] - ray.origin[i]) * inverse[i];
+		if(a > b)
+			std::swap(a, b);
+		enter = (a > enter) ? a : enter;
+		leave = (b < leave) ? b : leave;
+	}
+	return enter <= leave;
+}
+
+void ShadowCasters::Walk::Push(unsigned int node)
+{
+	Entry entry;
+	entry.node = node;
+	if(Cross(casters.nodes[node].box, entry.enter, entry.leave))
+		stack.push_back(entry);
+}
+
+ObjectPtr ShadowCasters::Walk::Next(double end, double& enter, double& leave)
+{
+	while(true)
+	{
+		while(leafItem < leafEnd)
+		{
+			const unsigned int object = casters.order[leafItem++];
+			if(Cross(casters.boxes[object], enter, leave) && (enter < end))
+				return casters.objects[object];
+		}
+
+		if(stack.empty())
+			return NULL;
+
+		const Entry entry = stack.back();
+		stack.pop_back();
+		if(entry.enter >= end)
+			continue;
+
+		const Node& node = casters.nodes[entry.node];
+		if(node.count > 0)
+		{
+			leafItem = node.first;
+			leafEnd = node.first + node.count;
+			continue;
+		}
+
+		// the nearer child is looked at first, so it goes on top
+		const size_t before = stack.size();
+		Push(node.left);
+		Push(node.right);
+		if((stack.size() == before + 2) && (stack[before].enter < stack[before + 1].enter))
+			std::swap(stack[before], stack[before + 1]);
+	}
+}
+
+}

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+
+#include <algorithm>
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "backend/interior/interior.h"
+#include "backend/interior/media.h"
+#include "backend/math/vector.h"
+#include "backend/scene/objects.h"
+#include "backend/scene/scene.h"
+#include "backend/scene/threaddata.h"
+#include "backend/support/task.h"
+#include "backend/shadow/shadowevents.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+namespace
+{
+
+/// How far in front of an object's box its ray starts. Shapes ignore hits near a ray's origin (SMALL_TOLERANCE), so the
+/// start keeps well clear of the surface, yet close enough that a far light costs no precision.
+const double kRunUp = 0.01;
+
+/// A surface is asked for further hits from this far behind its last one (see MIN_ISECT_DEPTH).
+const double kStepOn = 1.0e-6;
+
+/// A fading span is halved at most this often.
+const int kMostHalvings = 16;
+
+double FadeFactor(double colour, double distance, double power, double length)
+{
+	return colour + (1.0 - colour) / (1.0 + pow(length / distance, power));
+}
+
+}
+
+ShadowEvents::ShadowEvents(shared_ptr<SceneData> scene, TraceThreadData *thread, unsigned int quality, const ShadowCasters& c) :
+	// no volumes in the base class: media and atmosphere are not the texture's business here
+	Trace(scene, thread, quality & ~Q_VOLUME, noCooperate, noMedia, noRadiosity),
+	casters(c),
+	volumes((quality & Q_VOLUME) != 0),
+	containersOf(NULL),
+	probe(Ray::OtherRay, true),
+	shade(Ray::OtherRay, true)
+{
+	// maps hold plain filtered shadows; receivers of photons are ray-traced
+	thread->litObjectIgnoresPhotons = true;
+}
+
+dsm_result ShadowEvents::TraceRays(const LightSource& light, const dsm_ray *rays, unsigned int count, double tolerance, dsm_sink *sink)
+{
+	FindContainers(light);
+
+	for(unsigned int i = 0; i < count; i++)
+	{
+		if((i & 0x0f) == 0)
+			Task::CurrentTaskCooperate();
+
+		const dsm_result result = ReportRay(light, rays[i], i, tolerance, sink);
+		if(result != DSM_OK)
+			return result;
+	}
+	return DSM_OK;
+}
+
+void ShadowEvents::SpanSink::Span(double front, double back, const DblRGBColour& transmittance)
+{
+	if(result == DSM_OK)
+		result = ShadowPlugin::Api().sink_span(sink, ray, front, back, *transmittance);
+}
+
+/// Stock puts no media on the way from the light to the first surface, even if the light stands in them. The containers
+/// are needed all the same, so that leaving one is not taken for entering it.
+void ShadowEvents::FindContainers(const LightSource& light)
+{
+	if(containersOf == &light)
+		return;
+	containersOf = &light;
+	containers.clear();
+	if(!light.Parallel)
+		casters.Containing(Vector3d(light.Center), threadData, containers);
+}
+
+void ShadowEvents::EnterContainers(const LightSource& light, const dsm_ray& ray)
+{
+	inside.clear();
+	if(light.Parallel)
+	{
+		containers.clear();
+		casters.Containing(Vector3d(ray.origin[X], ray.origin[Y], ray.origin[Z]), threadData, containers);
+	}
+	for(vector<ObjectPtr>::const_iterator i(containers.begin()); i != containers.end(); i++)
+		inside.push_back((*i)->interior);
+}
+
+/// All surfaces of the mapped casters up to the first opaque one, nearest first.
+void ShadowEvents::FindHits(const dsm_ray& ray)
+{
+	ShadowCasters::Walk walk(casters, ray);
+	double end = ray.far_depth;
+	double enter, leave;
+
+	hits.clear();
+	while(ObjectPtr object = walk.Next(end, enter, leave))
+		end = FindHitsOf(object, ray, enter, leave, end);
+
+	std::stable_sort(hits.begin(), hits.end());
+}
+
+/// One object's surfaces. Many shapes report only their first hit outside CSG, so an object that is not opaque is asked
+/// again from just behind its last hit until nothing is left.
+/// @return     depth of the nearest opaque surface so far
+double ShadowEvents::FindHitsOf(ObjectPtr object, const dsm_ray& ray, double enter, double leave, double end)
+{
+	double start = max(0.0, enter - kRunUp);
+	double last = start;
+
+	do
+	{
+		IStack found(stackPool);
+		bool more = false;
+
+		for(int i = 0; i < 3; i++)
+		{
+			probe.Origin[i] = ray.origin[i] + start * ray.direction[i];
+			probe.Direction[i] = ray.direction[i];
+		}
+		probe.ClearInteriors();
+
+		if((!object->Bound.empty() && !Ray_In_Bound(probe, object->Bound, threadData)) ||
+		   !object->All_Intersections(probe, found, threadData))
+			break;
+
+		for(; found->size() > 0; found->pop())
+		{
+			const Intersection& isect = found->top();
+			const double depth = start + isect.Depth;
+
+			if((isect.Depth < MIN_ISECT_DEPTH) || ((start == 0.0) && (isect.Depth < SMALL_TOLERANCE)) || !(depth < end))
+				continue;
+
+			Hit hit;
+			hit.depth = depth;
+			hit.opaque = Test_Flag(isect.Object, OPAQUE_FLAG) != 0;
+			hit.isect = isect;
+			hits.push_back(hit);
+
+			if(hit.opaque)
+				end = depth;
+			else if(depth > last)
+			{
+				last = depth;
+				more = true;
+			}
+		}
+
+		if(!more || Test_Flag(object, OPAQUE_FLAG))
+			break;
+		start = last + kStepOn * max(1.0, fabs(last));
+	}
+	while(start < min(leave, end));
+
+	return end;
+}
+
+void ShadowEvents::Toggle(Interior *interior)
+{
+	vector<Interior *>::iterator i = std::find(inside.begin(), inside.end(), interior);
+	if(i == inside.end())
+		inside.push_back(interior);
+	else
+		inside.erase(i);
+}
+
+/// What the surface's textures let through, seen from the receiver: stock shades a caster along the ray that comes from
+/// the receiver, and normals, interior textures and several patterns depend on that.
+RGBColour ShadowEvents::ShadeHit(const LightSource& light, const dsm_ray& ray, Hit& hit)
+{
+	TraceTicket ticket(sceneData->parsedMaxTraceLevel, sceneData->parsedAdcBailout);
+	RGBColour colour(1.0);
+
+	for(int i = 0; i < 3; i++)
+	{
+		shade.Origin[i] = hit.isect.IPoint[i] + ray.direction[i];
+		shade.Direction[i] = -ray.direction[i];
+	}
+	shade.ClearInteriors(); // so neither fading nor media come in
+	hit.isect.Depth = 1.0;
+	ComputeShadowColour(light, hit.isect, shade, colour, ticket);
+	return colour;
+}
+
+/// Reports hits and what lies between them. Light that is gone stays gone: nothing behind matters.
+dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray, unsigned int index, double tolerance, dsm_sink *sink)
+{
+	const dsm_api_table& api = ShadowPlugin::Api();
+	double visible = 1.0;
+
+	FindHits(ray);
+	if(hits.empty())
+		return DSM_OK;
+	if(casters.HasVolumes())
+		EnterContainers(light, ray);
+
+	for(size_t i = 0; i < hits.size(); i++)
+	{
+		Hit& hit = hits[i];
+		double colour[3] = { 0.0, 0.0, 0.0 };
+
+		if(!hit.opaque)
+		{
+			const RGBColour c(ShadeHit(light, ray, hit));
+			for(int k = 0; k < 3; k++)
+				colour[k] = c[k];
+		}
+
+		dsm_result result = api.sink_surface(sink, index, hit.depth, colour);
+		if(result != DSM_OK)
+			return result;
+
+		visible *= max(colour[0], max(colour[1], colour[2]));
+		if(hit.opaque || (visible <= 0.0))
+			break;
+		if(!casters.HasVolumes())
+			continue;
+
+		const double next = (i + 1 < hits.size()) ? hits[i + 1].depth : ray.far_depth;
+		Interior *interior = hit.isect.Object->interior;
+
+		Toggle(interior);
+		if((interior->Fade_Power > 0.0) && (fabs(interior->Fade_Distance) > EPSILON) && (std::find(inside.begin(), inside.end(), interior) != inside.end()))
+			result = ReportFade(*interior, hit.depth, next, tolerance, index, sink);
+		if((result == DSM_OK) && volumes)
+		{
+			SpanSink spans(sink, index);
+			visible = ReportMedia(ray, hit.depth, next, visible, tolerance, spans);
+			result = spans.result;
+		}
+		if(result != DSM_OK)
+			return result;
+	}
+	return DSM_OK;
+}
+
+/// Fading takes one factor, 1 / (1 + (d/D)^p), from an object's surface on the light's side to the next surface only.
+/// It is no exponential, so the span is halved until a chord in the logarithm follows it.
+dsm_result ShadowEvents::ReportFade(const Interior& interior, double front, double back, double tolerance, unsigned int index, dsm_sink *sink)
+{
+	const dsm_api_table& api = ShadowPlugin::Api();
+	const double distance = interior.Fade_Distance, power = interior.Fade_Power;
+	const bool exponential = (power >= 1000);
+	double begin = front;
+
+	while(begin < back)
+	{
+		double end = back, t[3];
+
+		for(int halvings = 0; ; halvings++)
+		{
+			double error = 0.0;
+			for(int k = 0; k < 3; k++)
+			{
+				const double colour = interior.Fade_Colour[k];
+				if(exponential)
+				{
+					t[k] = exp(-(1.0 - colour) * (end - begin) / distance);
+					continue;
+				}
+				const double atBegin = FadeFactor(colour, distance, power, begin - front);
+				const double atMiddle = FadeFactor(colour, distance, power, 0.5 * (begin + end) - front);
+				const double atEnd = FadeFactor(colour, distance, power, end - front);
+				t[k] = (atBegin > 0.0) ? atEnd / atBegin : 0.0;
+				error = max(error, fabs(atMiddle - sqrt(max(atBegin * atEnd, 0.0))));
+			}
+			if((error <= 0.25 * tolerance) || (halvings == kMostHalvings))
+				break;
+			end = 0.5 * (begin + end);
+		}
+
+		const dsm_result result = api.sink_span(sink, index, begin, end, t);
+		if(result != DSM_OK)
+			return result;
+		begin = end;
+	}
+	return DSM_OK;
+}
+
+/// Media count only while every container around is hollow.
+double ShadowEvents::ReportMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, SpanSink& sink)
+{
+	media.clear();
+	for(vector<Interior *>::const_iterator i(inside.begin()); i != inside.end(); i++)
+	{
+		if(!(*i)->hollow)
+			return visible;
+		for(vector<Media>::const_iterator m((*i)->media.begin()); m != (*i)->media.end(); m++)
+			if(m->use_extinction)
+				media.push_back(&*m);
+	}
+	if(media.empty())
+		return visible;
+
+	return ShadowMedia(ray, tolerance, threadData, sink).Integrate(media, front, back, visible);
+}
+
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Everything that dims one light ray, found with POV-Ray's own shapes, textures and densities.
+
+#ifndef POVRAY_BACKEND_SHADOWEVENTS_H
+#define POVRAY_BACKEND_SHADOWEVENTS_H
+
+#include "backend/render/trace.h"
+#include "backend/shadow/shadowcasters.h"
+#include "backend/shadow/shadowmedia.h"
+
+namespace pov
+{
+
+class ShadowEvents : public Trace
+{
+	public:
+		ShadowEvents(shared_ptr<SceneData> scene, TraceThreadData *thread, unsigned int quality, const ShadowCasters& casters);
+
+		/// Reports a batch of rays of one light. Stops at the current task's pause points.
+		/// @return     what the library's sink said first that was not DSM_OK
+		dsm_result TraceRays(const LightSource& light, const dsm_ray *rays, unsigned int count, double tolerance, dsm_sink *sink);
+	private:
+		/// A surface on the ray; one that is not opaque comes with what its texture needs.
+		struct Hit
+		{
+			double depth;
+			bool opaque;
+			Intersection isect;
+			bool operator<(const Hit& other) const { return depth < other.depth; }
+		};
+
+		class SpanSink : public ShadowMedia::Sink
+		{
+			public:
+				SpanSink(dsm_sink *sink, unsigned int ray) : result(DSM_OK), sink(sink), ray(ray) { }
+				virtual void Span(double front, double back, const DblRGBColour& transmittance);
+				dsm_result result;
+			private:
+				dsm_sink *sink;
+				unsigned int ray;
+		};
+
+		const ShadowCasters& casters;
+		CooperateFunctor noCooperate;
+		MediaFunctor noMedia;
+		RadiosityFunctor noRadiosity;
+		const bool volumes;
+
+		const LightSource *containersOf; ///< the light that `containers` belongs to
+		vector<ObjectPtr> containers;    ///< hold the light itself, or, for a parallel one, may cross its plane
+
+		// scratch, kept between rays; a Ray is too big for the stack of every caller
+		vector<Hit> hits;
+		Ray probe, shade;
+		vector<Interior *> inside;
+		vector<const Media *> media;
+
+		void FindContainers(const LightSource& light);
+		void EnterContainers(const LightSource& light, const dsm_ray& ray);
+		void FindHits(const dsm_ray& ray);
+		double FindHitsOf(ObjectPtr object, const dsm_ray& ray, double enter, double leave, double end);
+		void Toggle(Interior *interior);
+		RGBColour ShadeHit(const LightSource& light, const dsm_ray& ray, Hit& hit);
+		dsm_result ReportRay(const LightSource& light, const dsm_ray& ray, unsigned int index, double tolerance, dsm_sink *sink);
+		dsm_result ReportFade(const Interior& interior, double front, double back, double tolerance, unsigned int index, dsm_sink *sink);
+		double ReportMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, SpanSink& sink);
+};
+
+}
+
+#endif

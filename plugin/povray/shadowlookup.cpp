@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The look-up: what Trace::TraceShadowRay asks before it traces.
+
+#include <typeinfo>
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "backend/math/matrices.h"
+#include "backend/math/vector.h"
+#include "backend/render/trace.h"
+#include "backend/scene/objects.h"
+#include "backend/scene/scene.h"
+#include "backend/scene/threaddata.h"
+#include "backend/shape/cones.h"
+#include "backend/shadow/shadowmaps.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+namespace
+{
+
+const double kSameHit = 1.0e-3; // as SHADOW_TOLERANCE in trace.cpp
+
+struct BeyondSameHit : public RayObjectCondition
+{
+	virtual bool operator()(const Ray&, const ObjectBase*, double depth) const { return depth > kSameHit; }
+};
+
+/// Without volumes, as long as it lives.
+class WithoutVolumes
+{
+	public:
+		explicit WithoutVolumes(unsigned int& q) : quality(q), saved(q) { quality &= ~Q_VOLUME; }
+		~WithoutVolumes() { quality = saved; }
+	private:
+		unsigned int& quality;
+		const unsigned int saved;
+};
+
+/// The plane of a thin rod's surface that needs the least bias: it holds the rod's axis, whatever the normal at the
+/// point is; the rod rises over it by the part of its radius that is nearer to the light.
+bool RodPlane(const Cone& rod, const Vector3d& toLight, const Vector3d& normal, dsm_plane& plane)
+{
+	const VECTOR kAxis = { 0.0, 0.0, 1.0 }, kRadius = { 1.0, 0.0, 0.0 };
+	Vector3d axis, radius;
+
+	MTransDirection(*axis, kAxis, rod.Trans);
+	MTransDirection(*radius, kRadius, rod.Trans); // the larger end's
+	axis.normalize();
+
+	Vector3d across(toLight - axis * dot(toLight, axis));
+	const double slope = across.length();
+	if(!(slope > 1.0e-3))
+		return false;
+	across *= 1.0 / slope;
+
+	for(int i = 0; i < 3; i++)
+		plane.normal[i] = across[i];
+	plane.rise = radius.length() * max(0.0, 1.0 - dot(normal, across)) / slope;
+	return true;
+}
+
+/// No part of an object is nearer to the light than its box.
+void BoxPlane(const BBOX& box, const Vector3d& point, const Vector3d& toLight, dsm_plane& plane)
+{
+	double rise = 0.0;
+
+	for(int i = 0; i < 3; i++)
+	{
+		const double low = box.Lower_Left[i] - point[i];
+		const double high = low + box.Lengths[i];
+		rise += max(low * toLight[i], high * toLight[i]);
+		plane.normal[i] = toLight[i];
+	}
+	plane.rise = max(rise, 0.0);
+}
+
+}
+
+/// Where the receiver's own surface can be. Surfaces that are in no map need no bias at all.
+static void DescribeReceiver(const ShadowReceiver& receiver, const ShadowMaps& maps, const Vector3d& point, const Vector3d& toLight, dsm_receiver& out)
+{
+	for(int i = 0; i < 3; i++)
+		out.point[i] = point[i];
+	out.plane_count = 0;
+
+	if((receiver.object == NULL) || Test_Flag(receiver.object, NO_SHADOW_FLAG) ||
+	   maps.Casters().IsUnmapped(receiver.object) || ((receiver.csg != NULL) && maps.Casters().IsUnmapped(receiver.csg)))
+		return;
+
+	const Vector3d normal((dot(receiver.normal, toLight) < 0.0) ? -receiver.normal : receiver.normal);
+	for(int i = 0; i < 3; i++)
+		out.planes[0].normal[i] = normal[i];
+	out.planes[0].rise = 0.0;
+
+	if((typeid(*receiver.object) != typeid(Cone)) || !RodPlane(*static_cast<const Cone *>(receiver.object), toLight, normal, out.planes[1]))
+		BoxPlane(receiver.object->BBox, point, toLight, out.planes[1]);
+	out.plane_count = 2;
+}
+
+/// Multiplies `colour` by the share of the light that reaches the point, if the light has a map that knows.
+/// @return     false if the ray has to be traced; `colour` is then as it was
+bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray& lightsourceray, const Vector3d& point, RGBColour& colour, TraceTicket& ticket)
+{
+	ShadowMaps& maps = *sceneData->shadowMaps;
+
+	if(maps.Unshadowed())
+		return true;
+
+	const size_t index = maps.Find(lightsource);
+	if(index == ShadowMaps::kNone)
+		return false;
+
+	const ShadowMap& map = maps[index];
+	if(!lightsourceray.IsHollowRay() ||
+	   (!(qualityFlags & Q_VOLUME) && (maps.Casters().HasVolumes() || map.atmosphere)) ||
+	   (map.photons && sceneData->photonSettings.photonsEnabled && (sceneData->surfacePhotonMap.numPhotons > 0) && !threadData->litObjectIgnoresPhotons))
+		return false;
+
+	if(shadowReceiver.context == NULL)
+		shadowReceiver.context = maps.Current();
+
+	dsm_receiver receiver;
+	double rgb[3];
+	DescribeReceiver(shadowReceiver, maps, point, Vector3d(lightsourceray.Direction), receiver);
+	if(shadowReceiver.context->LookUp(index, receiver, rgb) == DSM_TRACE)
+		return false;
+
+	colour.red() *= rgb[0];
+	colour.green() *= rgb[1];
+	colour.blue() *= rgb[2];
+	if(!maps.Casters().Unmapped().empty())
+		TraceUnmappedCasters(maps.Casters().Unmapped(), lightsource, depth, lightsourceray, colour, ticket);
+	if(map.atmosphere && (depth > kSameHit))
+	{
+		Ray ray(lightsourceray);
+		Intersection end;
+		ray.SetFlags(Ray::OtherRay, true, false);
+		end.Depth = depth;
+		end.Object = NULL;
+		ComputeShadowMedia(ray, end, colour, true, ticket);
+	}
+	return true;
+}
+
+/// The casters that no map holds, each by itself; they have no volumes, and their order does not matter.
+void Trace::TraceUnmappedCasters(const vector<ObjectPtr>& casters, const LightSource& lightsource, double depth, const Ray& lightsourceray, RGBColour& colour, TraceTicket& ticket)
+{
+	const WithoutVolumes without(qualityFlags);
+	const BeyondSameHit condition;
+	Ray ray(lightsourceray);
+
+	ray.SetFlags(Ray::OtherRay, true, false);
+	for(vector<ObjectPtr>::const_iterator caster(casters.begin()); caster != casters.end(); caster++)
+	{
+		double left = depth;
+		Intersection isect;
+
+		Assign_Vector(ray.Origin, lightsourceray.Origin);
+		while(!((fabs(colour.red()) < EPSILON) && (fabs(colour.green()) < EPSILON) && (fabs(colour.blue()) < EPSILON)) &&
+		      FindIntersection(*caster, isect, ray, condition, left) && (isect.Depth < left - kSameHit))
+		{
+			left -= isect.Depth;
+			ray.ClearInteriors();
+			ComputeShadowColour(lightsource, isect, ray, colour, ticket);
+			Assign_Vector(ray.Origin, isect.IPoint);
+			isect = Intersection();
+		}
+	}
+}
+
+}

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+
+#include <iomanip>
+#include <sstream>
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "base/povmsgid.h"
+#include "backend/control/renderbackend.h"
+#include "backend/lighting/point.h"
+#include "backend/math/vector.h"
+#include "backend/scene/objects.h"
+#include "backend/scene/scene.h"
+#include "backend/scene/threaddata.h"
+#include "backend/scene/view.h"
+#include "backend/support/task.h"
+#include "backend/shadow/shadowmaps.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+using namespace pov_base;
+
+namespace
+{
+
+bool IsRefractingTarget(const ObjectBase *object, const LightSource& light)
+{
+	if(Test_Flag(object, PH_TARGET_FLAG) && !Test_Flag(object, PH_RFR_OFF_FLAG) && !Test_Flag(&light, PH_RFR_OFF_FLAG) &&
+	   (Test_Flag(object, PH_RFR_ON_FLAG) || Test_Flag(&light, PH_RFR_ON_FLAG)))
+		return true;
+
+	if(object->Type & IS_COMPOUND_OBJECT)
+	{
+		const CompoundObject *compound = static_cast<const CompoundObject *>(object);
+		for(vector<ObjectPtr>::const_iterator child(compound->children.begin()); child != compound->children.end(); child++)
+			if(IsRefractingTarget(*child, light))
+				return true;
+	}
+	return false;
+}
+
+/// Whether fog dims light by one factor a length, so that it can be multiplied in at the look-up.
+bool FogMultiplies(const FOG *fog)
+{
+	for(; fog != NULL; fog = fog->Next)
+		if((fog->Turb != NULL) || (fog->colour.transm() > 0.0))
+			return false;
+	return true;
+}
+
+/// The light as the library wants it.
+void Describe(const LightSource& light, const vector<dsm_box>& casters, dsm_light& out)
+{
+	out.size = sizeof(out);
+	out.kind = light.Parallel ? DSM_LIGHT_PARALLEL : (light.Light_Type == SPOT_SOURCE) ? DSM_LIGHT_SPOT : DSM_LIGHT_POINT;
+	for(int i = 0; i < 3; i++)
+	{
+		out.origin[i] = light.Center[i];
+		out.direction[i] = light.Direction[i];
+	}
+	out.cos_angle = (light.Light_Type == SPOT_SOURCE) ? max(light.Falloff, 0.0) : 0.0; // POV-Ray's spots end at 90 degrees
+	out.radius = (light.Light_Type == CYLINDER_SOURCE) ? light.Falloff : 0.0;
+	out.casters = casters.empty() ? NULL : &casters[0];
+	out.caster_count = casters.size();
+}
+
+}
+
+// ----- ShadowContext
+
+ShadowContext::ShadowContext(ShadowMaps& m, ViewData *viewData, ViewThreadData *threadData) :
+	lookUps(0), rayTraced(0),
+	maps(m),
+	events(viewData->GetSceneData(), threadData, viewData->GetQualityFeatureFlags(), m.Casters()),
+	workers(m.maps.size())
+{
+	for(size_t i = 0; i < workers.size(); i++)
+	{
+		workers[i].context = this;
+		workers[i].map = i;
+		workers[i].worker = NULL;
+		if(ShadowPlugin::Api().worker_create(maps[i].map.get(), &workers[i], &workers[i].worker) != DSM_OK)
+			throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+	}
+}
+
+ShadowContext::~ShadowContext()
+{
+	for(vector<Worker>::iterator i(workers.begin()); i != workers.end(); i++)
+		ShadowPlugin::Api().worker_destroy(i->worker);
+}
+
+dsm_result ShadowContext::LookUp(size_t map, const dsm_receiver& receiver, double rgb[3])
+{
+	const dsm_result result = ShadowPlugin::Api().lookup(workers[map].worker, &receiver, rgb);
+
+	lookUps++;
+	if((result == DSM_OK) || (result == DSM_OUTSIDE))
+		return result;
+	rayTraced++;
+
+	if(failure)
+	{
+		std::exception_ptr thrown;
+		std::swap(thrown, failure);
+		std::rethrow_exception(thrown);
+	}
+	if(result == DSM_NO_MEMORY)
+		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+	return DSM_TRACE;
+}
+
+dsm_result ShadowContext::Trace(void *data, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink)
+{
+	Worker& worker = *static_cast<Worker *>(data);
+	ShadowContext& self = *worker.context;
+
+	try
+	{
+		return self.events.TraceRays(*self.maps[worker.map].light, rays, count, tolerance, sink);
+	}
+	catch(...)
+	{
+		// a stopped task, or an error of POV-Ray's: LookUp passes it on
+		self.failure = std::current_exception();
+		return DSM_CANCELLED;
+	}
+}
+
+int32_t ShadowContext::Pause(void *data)
+{
+	ShadowContext& self = *static_cast<Worker *>(data)->context;
+
+	try
+	{
+		Task::CurrentTaskCooperate();
+		return 0;
+	}
+	catch(...)
+	{
+		self.failure = std::current_exception();
+		return 1;
+	}
+}
+
+// ----- ShadowMaps
+
+shared_ptr<ShadowMaps> ShadowMaps::New(ViewData *viewData, int method, int threadCount, vector<ViewThreadData *>& threads)
+{
+	const SceneData& scene = *viewData->GetSceneData();
+	const bool wanted = (method == kPOVList_ShadowMethod_None) || (method == kPOVList_ShadowMethod_Deep) ||
+	                    ((method == kPOVList_ShadowMethod_Scene) && !scene.shadowSettings.empty());
+
+	return shared_ptr<ShadowMaps>(wanted ? new ShadowMaps(viewData, method, threadCount, threads) : NULL);
+}
+
+ShadowMaps::ShadowMaps(ViewData *vd, int method, int threadCount, vector<ViewThreadData *>& threads) :
+	viewData(vd),
+	casters(*vd->GetSceneData()),
+	unshadowed(method == kPOVList_ShadowMethod_None),
+	rayTracedLights(0),
+	current(&ShadowMaps::Release)
+{
+	const SceneData& scene = *viewData->GetSceneData();
+
+	for(vector<LightSource *>::const_iterator i(scene.lightSources.begin()); i != scene.lightSources.end(); i++)
+		globalLights.push_back(Add(**i, method));
+	for(vector<LightSource *>::const_iterator i(scene.lightGroupLightSources.begin()); i != scene.lightGroupLightSources.end(); i++)
+		groupLights.push_back(Add(**i, method));
+
+	for(int i = 0; (i < threadCount) && !maps.empty(); i++)
+	{
+		threads.push_back(new ViewThreadData(viewData));
+		contexts.push_back(shared_ptr<ShadowContext>(new ShadowContext(*this, viewData, threads.back())));
+		idle.push_back(contexts.back().get());
+	}
+}
+
+ShadowMaps::~ShadowMaps()
+{
+	current.release(); // the contexts go now, and must not be put back among the idle ones later
+}
+
+/// @return     the light's place in the list of maps, or kNone
+size_t ShadowMaps::Add(const LightSource& light, int method)
+{
+	const SceneData& scene = *viewData->GetSceneData();
+	const bool wanted = (method == kPOVList_ShadowMethod_Deep) || ((method == kPOVList_ShadowMethod_Scene) && (light.shadowSettings != 0));
+
+	if(!wanted || (light.Light_Type == FILL_LIGHT_SOURCE))
+		return kNone;
+	if(!CanHaveMap(light))
+	{
+		rayTracedLights++;
+		return kNone;
+	}
+
+	const bool created = (light.shadowSettings != 0) ?
+		Create(light, scene.shadowSettings[light.shadowSettings - 1]->Get()) : Create(light, ShadowSettings().Get());
+	if(!created)
+		rayTracedLights++;
+	return created ? maps.size() - 1 : kNone;
+}
+
+bool ShadowMaps::CanHaveMap(const LightSource& light) const
+{
+	const SceneData& scene = *viewData->GetSceneData();
+	const bool attenuated = light.Media_Interaction && light.Media_Attenuation;
+
+	// the parser has warned of these
+	if(light.Area_Light || (light.Projected_Through_Object != NULL))
+		return false;
+
+	const char *why = NULL;
+	if((light.Parallel || (light.Light_Type == SPOT_SOURCE)) && !(fabs(Vector3d(light.Direction).lengthSqr() - 1.0) < 1.0e-6))
+		why = "points nowhere (point_at is its own location)";
+	else if(casters.HasUnmappedVolumes())
+		why = "shines on an object without end that has media or fading";
+	else if(attenuated && !FogMultiplies(scene.fog))
+		why = "shines through fog with turbulence or a minimum transmittance";
+	if(why != NULL)
+		Tell(1, string("A light_source ") + why + "; its shadows are ray-traced.");
+	return why == NULL;
+}
+
+bool ShadowMaps::Create(const LightSource& light, const dsm_settings *settings)
+{
+	const SceneData& scene = *viewData->GetSceneData();
+	dsm_host host;
+	dsm_light description;
+	ShadowMap entry;
+	dsm_map *map = NULL;
+
+	host.size = sizeof(host);
+	host.data = this;
+	host.trace = &ShadowContext::Trace;
+	host.pause = &ShadowContext::Pause;
+	host.report = &ShadowMaps::Report;
+
+	Describe(light, casters.Boxes(), description);
+	const dsm_result result = ShadowPlugin::Api().map_create(&host, &description, settings, &map);
+	if(result == DSM_NO_MEMORY)
+		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+	if(result != DSM_OK)
+		return false;
+
+	entry.light = &light;
+	entry.map.reset(map, ShadowPlugin::Api().map_destroy);
+	entry.photons = false;
+	for(vector<ObjectPtr>::const_iterator i(scene.objects.begin()); i != scene.objects.end() && !entry.photons; i++)
+		entry.photons = IsRefractingTarget(*i, light);
+	entry.atmosphere = light.Media_Interaction && light.Media_Attenuation && ((scene.fog != NULL) || !scene.atmosphere.empty());
+	maps.push_back(entry);
+	return true;
+}
+
+/// Tasks follow each other in threads of their own, never more at a time than there are contexts; the next one may start
+/// while the last one's thread is still ending.
+ShadowContext *ShadowMaps::Current()
+{
+	ShadowContext *context = current.get();
+	if(context != NULL)
+		return context;
+
+	boost::unique_lock<boost::mutex> lock(idleMutex);
+	while(idle.empty())
+		idleChanged.wait(lock);
+	context = idle.back();
+	idle.pop_back();
+	current.reset(context);
+	return context;
+}
+
+void ShadowMaps::Release(ShadowContext *context)
+{
+	ShadowMaps& maps = context->maps;
+
+	boost::lock_guard<boost::mutex> lock(maps.idleMutex);
+	maps.idle.push_back(context);
+	maps.idleChanged.notify_one();
+}
+
+void ShadowMaps::Report(void *self, int32_t severity, const char *sentence)
+{
+	static_cast<ShadowMaps *>(self)->Tell(severity, sentence);
+}
+
+void ShadowMaps::Tell(int severity, const string& sentence) const
+{
+	if(severity < 1)
+		return;
+
+	POVMS_Object message(kPOVObjectClass_ControlData);
+	message.SetString(kPOVAttrib_EnglishText, ("Deep shadows: " + sentence).c_str());
+	message.SetInt(kPOVAttrib_Warning, 0);
+	RenderBackend::SendViewOutput(viewData->GetViewId(), viewData->GetSceneData()->frontendAddress, kPOVMsgIdent_Warning, message);
+}
+
+string ShadowMaps::Statistics() const
+{
+	dsm_statistics sum = { 0 };
+	POV_ULONG lookUps = 0, rayTraced = 0;
+	std::ostringstream text;
+
+	if(maps.empty())
+		return string();
+
+	for(vector<ShadowMap>::const_iterator i(maps.begin()); i != maps.end(); i++)
+	{
+		dsm_statistics s = { 0 };
+		s.size = sizeof(s);
+		ShadowPlugin::Api().statistics(i->map.get(), &s);
+		sum.faces += s.faces;
+		sum.tiles += s.tiles;
+		sum.tiles_baked += s.tiles_baked;
+		sum.tiles_failed += s.tiles_failed;
+		sum.pixels += s.pixels;
+		sum.pixels_baked += s.pixels_baked;
+		sum.pixels_marked += s.pixels_marked;
+		sum.pixels_coloured += s.pixels_coloured;
+		sum.rays += s.rays;
+		sum.vertices_in += s.vertices_in;
+		sum.vertices += s.vertices;
+		sum.bytes += s.bytes;
+		sum.bake_seconds += s.bake_seconds;
+		sum.trace_seconds += s.trace_seconds;
+	}
+	for(vector<shared_ptr<ShadowContext> >::const_iterator i(contexts.begin()); i != contexts.end(); i++)
+	{
+		lookUps += (*i)->lookUps;
+		rayTraced += (*i)->rayTraced;
+	}
+
+	const double baked = max(1.0, double(sum.pixels_baked));
+	text << std::fixed << std::setprecision(1)
+	     << "Maps:                " << maps.size() << " (" << sum.faces << " faces), ray-traced lights: " << rayTracedLights << "\n"
+	     << "Pixels baked:        " << sum.pixels_baked << " of " << sum.pixels << " (" << 100.0 * sum.pixels_baked / max(1.0, double(sum.pixels)) << " percent), coloured: "
+	     << sum.pixels_coloured << ", marked: " << sum.pixels_marked << "\n"
+	     << "Light rays:          " << sum.rays << "\n"
+	     << std::setprecision(2)
+	     << "Vertices per pixel:  " << sum.vertices / baked << " (before compression " << sum.vertices_in / baked << ")\n"
+	     << "Bytes:               " << sum.bytes << "\n"
+	     << "Look-ups:            " << lookUps << ", ray-traced: " << rayTraced << "\n"
+	     << "Bake time:           " << sum.bake_seconds << " thread seconds (" << sum.trace_seconds << " tracing light rays)\n";
+	if(sum.tiles_failed > 0)
+		text << "Tiles failed:        " << sum.tiles_failed << "\n";
+	return text.str();
+}
+
+}

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The shadow maps of one render: which lights have one, and what each thread needs to bake and ask them.
+
+#ifndef POVRAY_BACKEND_SHADOWMAPS_H
+#define POVRAY_BACKEND_SHADOWMAPS_H
+
+#include <exception>
+
+#include <boost/thread.hpp>
+
+#include "backend/shadow/shadowcasters.h"
+#include "backend/shadow/shadowevents.h"
+#include "backend/shadow/shadowsettings.h"
+
+namespace pov
+{
+
+class ShadowMaps;
+class ViewData;
+class ViewThreadData;
+
+/// A light that has a map.
+struct ShadowMap
+{
+	const LightSource *light;
+	shared_ptr<dsm_map> map;
+	bool photons;     ///< receivers of photons from this light are ray-traced
+	bool atmosphere;  ///< fog and atmospheric media dim this light, and are multiplied in at the look-up
+};
+
+/// What one thread bakes and looks up with: its own tracing objects, so that baking does not disturb the render that
+/// it interrupts, and its own workers.
+class ShadowContext
+{
+	public:
+		ShadowContext(ShadowMaps& maps, ViewData *viewData, ViewThreadData *threadData);
+		~ShadowContext();
+
+		/// Asks a map. Throws what baking has thrown, after the library has unwound.
+		/// @return     DSM_OK or DSM_OUTSIDE with rgb set, or DSM_TRACE
+		dsm_result LookUp(size_t map, const dsm_receiver& receiver, double rgb[3]);
+
+		POV_ULONG lookUps, rayTraced;
+	private:
+		/// Hands a map's requests to this thread.
+		struct Worker
+		{
+			ShadowContext *context;
+			size_t map;
+			dsm_worker *worker;
+		};
+
+		ShadowMaps& maps;
+		ShadowEvents events;
+		vector<Worker> workers;
+		std::exception_ptr failure; ///< no exception may cross the library, so it waits here
+
+		friend class ShadowMaps;
+		static dsm_result Trace(void *worker, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink);
+		static int32_t Pause(void *worker);
+};
+
+class ShadowMaps
+{
+	public:
+		/// Made before the first render task: what a context copies from the scene is not safe to copy later.
+		/// @param[in]      method      one of kPOVList_ShadowMethod_*
+		/// @param[in,out]  threads     the contexts' thread data is added here, for statistics and clean-up
+		/// @return                     NULL if every light is ray-traced anyway
+		static shared_ptr<ShadowMaps> New(ViewData *viewData, int method, int threadCount, vector<ViewThreadData *>& threads);
+		ShadowMaps(ViewData *viewData, int method, int threadCount, vector<ViewThreadData *>& threads);
+		~ShadowMaps();
+
+		bool Unshadowed() const { return unshadowed; }
+
+		/// The light's place in the list of maps, or kNone.
+		size_t Find(const LightSource& light) const
+		{
+			const vector<size_t>& places = light.lightGroupLight ? groupLights : globalLights;
+			return light.index < places.size() ? places[light.index] : kNone;
+		}
+		const ShadowMap& operator[](size_t map) const { return maps[map]; }
+
+		const ShadowCasters& Casters() const { return casters; }
+
+		/// The calling thread's context. Lives as long as the thread works on one task.
+		ShadowContext *Current();
+
+		/// The section for the render statistics; empty if no light has a map.
+		string Statistics() const;
+
+		static const size_t kNone = static_cast<size_t>(-1);
+	private:
+		friend class ShadowContext;
+
+		ViewData *viewData;
+		ShadowCasters casters;
+		bool unshadowed;
+		vector<ShadowMap> maps;
+		vector<size_t> globalLights, groupLights;
+		size_t rayTracedLights;
+
+		vector<shared_ptr<ShadowContext> > contexts;
+		vector<ShadowContext *> idle;
+		boost::mutex idleMutex;
+		boost::condition_variable idleChanged;
+		boost::thread_specific_ptr<ShadowContext> current;
+
+		size_t Add(const LightSource& light, int method);
+		bool CanHaveMap(const LightSource& light) const;
+		bool Create(const LightSource& light, const dsm_settings *settings);
+		void Tell(int severity, const string& sentence) const;
+
+		static void Release(ShadowContext *context);
+		static void Report(void *self, int32_t severity, const char *sentence);
+};
+
+}
+
+#endif
