@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A cloud with pipes through it: one map shadows media and surfaces, both ways (Lokovic & Veach 2000, figure 11).
+// Look at the dark shafts that the pipes throw into the cloud, and at the cloud's soft shadow on pipes, floor and wall.
+// Truth: surfaces as ray-traced; media by the integral of the density, which ray tracing nears as MS grows.
+//
+// Declare=MS=20         media samples of a ray
+// Declare=Density=2.4   extinction where the cloud is thickest, a unit of length
+#version 3.7;
+global_settings { assumed_gamma 1 }
+
+#ifndef (MS)      #declare MS = 20; #end
+#ifndef (Density) #declare Density = 2.4; #end
+
+camera {
+  location <0.3, 1.9, -7.6>
+  right x*image_width/image_height
+  look_at <0.1, 0.05, 0>
+  angle 40
+}
+
+light_source {
+  <-5.5, 7.0, -0.6>, rgb <1.0, 0.93, 0.82>*2.6
+  spotlight point_at <0.2, -0.1, 0> radius 22 falloff 40
+  deep_shadow { resolution 512 samples 16 }
+}
+
+background { rgb <0.16, 0.20, 0.28> }
+
+// Floor and wall.
+box { <-8, -1.9, -6>, <8, -1.8, 3> pigment { rgb <0.40, 0.46, 0.54> } finish { ambient 0.03 diffuse 0.55 } }
+box { <-8, -1.8, 2.9>, <8, 6, 3> pigment { rgb <0.40, 0.46, 0.54> } finish { ambient 0.03 diffuse 0.55 } }
+
+// Pipes, with a flange where they leave the picture's middle.
+#declare Copper = texture { pigment { rgb <0.85, 0.42, 0.22> } finish { ambient 0.04 diffuse 0.5 specular 0.7 roughness 0.02 metallic } }
+#declare Steel = texture { pigment { rgb <0.55, 0.60, 0.66> } finish { ambient 0.04 diffuse 0.5 specular 0.7 roughness 0.02 metallic } }
+#macro Pipe(From, To, R)
+  cylinder { From, To, R }
+  #local D = vnormalize(To - From);
+  #for (I, 0.12, 0.9, 0.38)
+    #local P = From + (To - From)*I;
+    cylinder { P - 0.06*D, P + 0.06*D, R*1.5 }
+  #end
+#end
+union { Pipe(<-3.2, 0.75, -0.35>, <3.2, 0.55, 0.3>, 0.13) texture { Copper } }
+union { Pipe(<-3.2, -0.15, 0.4>, <3.2, -0.5, -0.45>, 0.17) texture { Steel } }
+union { Pipe(<-0.75, -1.8, 0.15>, <-0.55, 2.6, 0.0>, 0.11) texture { Copper } }
+union { Pipe(<1.0, -1.8, -0.4>, <0.7, 2.6, 0.25>, 0.14) texture { Steel } }
+
+// The cloud.
+sphere {
+  0, 1
+  scale <2.2, 1.6, 1.4>
+  hollow
+  pigment { rgbt 1 }
+  interior {
+    media {
+      method 2 intervals 1 samples MS
+      scattering { 1, rgb Density }
+      emission rgb <0.035, 0.045, 0.065>*Density
+      density {
+        spherical
+        scale 0.78
+        warp { turbulence 0.4 octaves 4 lambda 2.3 omega 0.55 }
+        density_map { [0.05 rgb 0] [0.35 rgb 0.8] [1 rgb 1] }
+        scale <2.2, 1.6, 1.4>
+      }
+    }
+  }
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Coloured glass: panes in layers, a checkered pane, a marbled pane, spheres and a vase, on a white floor (a finite box).
+// Look at the colours where shadows cross: red over blue, checks over green, and twice through the wall of each sphere.
+// Truth: ray-traced; filter and transmit only, no photons, no caustics, so light passes straight through.
+#version 3.7;
+global_settings { assumed_gamma 1 max_trace_level 12 }
+
+camera {
+  location <0.2, 5.4, -9.8>
+  right x*image_width/image_height
+  look_at <0.25, 0.2, -0.1>
+  angle 42
+}
+
+light_source {
+  <-3.5, 8.5, 7>, rgb <1.0, 0.97, 0.92>*1.15
+  spotlight point_at <0.3, 0, -0.6> radius 30 falloff 38
+  deep_shadow { resolution 1024 samples 16 }
+}
+light_source {
+  <5, 8, -8>, rgb <0.20, 0.23, 0.28>
+  spotlight point_at 0 radius 26 falloff 34
+  deep_shadow { resolution 512 samples 16 }
+}
+
+background { rgb <0.35, 0.40, 0.48> }
+
+#declare Polish = finish { ambient 0 diffuse 0.12 specular 0.6 roughness 0.004 reflection { 0.02, 0.35 fresnel on } conserve_energy }
+#declare Solid = interior { ior 1.5 }
+
+// The floor.
+box { <-9, -0.2, -7>, <9, 0, 9> pigment { rgb 1 } finish { ambient 0 diffuse 0.9 } }
+
+// A fan of three plain panes: the shadows multiply where they cross.
+#declare Pane = box { <-0.9, 0, -0.03>, <0.9, 2.1, 0.03> }
+object { Pane pigment { rgbf <0.95, 0.18, 0.12, 0.95> } finish { Polish } interior { Solid } rotate -28*y translate <-2.75, 0.02, 0.7> }
+object { Pane pigment { rgbf <0.15, 0.35, 0.95, 0.95> } finish { Polish } interior { Solid } rotate -8*y translate <-2.0, 0.02, 0.05> }
+object { Pane pigment { rgbf <1.0, 0.85, 0.15, 0.95> } finish { Polish } interior { Solid } rotate 14*y translate <-1.35, 0.02, -0.75> }
+
+// A pane of checks, and one of marble, filter and transmit mixed.
+object {
+  Pane
+  texture { pigment { checker rgbf <0.15, 0.7, 0.3, 0.9> rgbft <0.9, 0.9, 1.0, 0.3, 0.6> scale 0.3 translate 0.15*z } finish { Polish } }
+  interior { Solid }
+  rotate -22*y translate <2.35, 0.02, 1.5>
+}
+box {
+  <-0.75, 0, -0.02>, <0.75, 1.5, 0.02>
+  texture {
+    pigment {
+      marble turbulence 0.7
+      color_map { [0 rgbf <0.75, 0.2, 0.8, 0.95>] [0.5 rgbft <1, 0.95, 0.9, 0.4, 0.55>] [0.8 rgbf <0.1, 0.6, 0.7, 0.85>] [1 rgb <0.05, 0.1, 0.2>] }
+      scale 0.5
+    }
+    finish { Polish }
+  }
+  // A second layer: a fine grille, opaque where it is dark.
+  texture {
+    pigment { brick rgb <0.2, 0.16, 0.1>, rgbt 1 brick_size <0.25, 0.125, 1> mortar 0.012 }
+    finish { ambient 0 diffuse 0.6 }
+  }
+  interior { Solid }
+  rotate -30*y translate <3.1, 0.02, -0.2>
+}
+
+// Spheres: solid, hollow, and one within another.
+sphere { <0.15, 0.62, 0.9>, 0.6 pigment { rgbf <0.2, 0.85, 0.55, 0.92> } finish { Polish } interior { Solid } }
+difference {
+  sphere { 0, 0.5 } sphere { 0, 0.46 }
+  pigment { rgbf <1.0, 0.5, 0.15, 0.92> } finish { Polish } interior { Solid }
+  translate <0.35, 0.52, -1.55>
+}
+sphere { <1.45, 0.55, -0.85>, 0.53 pigment { rgbf <0.85, 0.9, 1.0, 0.96> } finish { Polish } interior { ior 1.5 } }
+sphere { <1.45, 0.55, -0.85>, 0.28 pigment { rgbf <0.9, 0.15, 0.35, 0.9> } finish { Polish } interior { ior 1.5 } }
