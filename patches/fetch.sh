@@ -31,11 +31,12 @@ from_list() {
 
 # Stanzas of `Field: value`, where lines that begin with a space continue a field (a key block, for example).
 from_sources() {
-  local stanza
+  local stanza fields
   while IFS= read -r -d '' stanza; do
-    grep -qiE '^Enabled:[[:space:]]*(no|false|0)' <<<"$stanza" && continue
-    grep -qiE "^Suites:(.*[[:space:]])?$suite([[:space:]]|\$)" <<<"$stanza" || continue
-    grep -qiE '^Components:(.*[[:space:]])?main([[:space:]]|$)' <<<"$stanza" || continue
+    fields=$(sed -e ':more' -e 'N' -e '$!b more' -e 's/\n[[:space:]]/ /g' <<<"$stanza")
+    grep -qiE '^Enabled:[[:space:]]*(no|false|0)' <<<"$fields" && continue
+    grep -qiE "^Suites:(.*[[:space:]])?$suite([[:space:]]|\$)" <<<"$fields" || continue
+    grep -qiE '^Components:(.*[[:space:]])?main([[:space:]]|$)' <<<"$fields" || continue
     {
       echo "Types: deb-src"
       echo "Suites: $suite"

@@ -42,7 +42,8 @@ typedef int32_t dsm_result;
 enum {
   DSM_OK = 0,
   DSM_OUTSIDE = 1,    /* look-up: nothing in the map can shadow the point; visibility is 1 */
-  DSM_TRACE = 2,      /* look-up: the map has no answer here (light grows, or the tile failed): trace the ray */
+  DSM_TRACE = 2,      /* look-up: the map has no answer here (light grows, an occluder too close to the surface to be told
+                         from it, or the tile failed): trace the ray */
   DSM_CANCELLED = 3,  /* the host's `pause` asked to stop; the tile is absent again */
   DSM_NO_MEMORY = 4,
   DSM_INVALID = 5     /* an argument or a setting is out of its range */
@@ -137,7 +138,7 @@ typedef struct {
 typedef struct {
   double point[3];
   uint32_t plane_count;   /* 0: no surface here (media), or one that the map does not hold */
-  dsm_plane planes[2];
+  dsm_plane planes[2];    /* the first is the tangent plane at the point */
 } dsm_receiver;
 
 typedef struct {

@@ -21,7 +21,7 @@ camera {
 light_source {
   <9, 10, -5.5>, rgb <1.0, 0.93, 0.82>*3.2
   spotlight point_at 0 radius 16 falloff 20
-  deep_shadow { resolution 256 samples 16 }
+  deep_shadow { resolution 128 samples 4 }
 }
 
 sky_sphere {

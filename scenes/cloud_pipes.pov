@@ -4,12 +4,12 @@
 // Truth: surfaces as ray-traced; media by the integral of the density, which ray tracing nears as MS grows.
 //
 // Declare=MS=20         media samples of a ray
-// Declare=Density=2.4   extinction where the cloud is thickest, a unit of length
+// Declare=Density=3.2   extinction where the cloud is thickest, a unit of length
 #version 3.7;
 global_settings { assumed_gamma 1 }
 
 #ifndef (MS)      #declare MS = 20; #end
-#ifndef (Density) #declare Density = 2.4; #end
+#ifndef (Density) #declare Density = 3.2; #end
 
 camera {
   location <0.3, 1.9, -7.6>
@@ -19,7 +19,7 @@ camera {
 }
 
 light_source {
-  <-5.5, 7.0, -0.6>, rgb <1.0, 0.93, 0.82>*2.6
+  <-5.5, 6.5, -2.0>, rgb <1.0, 0.93, 0.82>*3.3
   spotlight point_at <0.2, -0.1, 0> radius 22 falloff 40
   deep_shadow { resolution 512 samples 16 }
 }
@@ -41,9 +41,9 @@ box { <-8, -1.8, 2.9>, <8, 6, 3> pigment { rgb <0.40, 0.46, 0.54> } finish { amb
     cylinder { P - 0.06*D, P + 0.06*D, R*1.5 }
   #end
 #end
-union { Pipe(<-3.2, 0.75, -0.35>, <3.2, 0.55, 0.3>, 0.13) texture { Copper } }
+union { Pipe(<-3.2, 1.15, -0.75>, <3.2, 0.75, -0.35>, 0.13) texture { Copper } }
 union { Pipe(<-3.2, -0.15, 0.4>, <3.2, -0.5, -0.45>, 0.17) texture { Steel } }
-union { Pipe(<-0.75, -1.8, 0.15>, <-0.55, 2.6, 0.0>, 0.11) texture { Copper } }
+union { Pipe(<-0.9, -1.8, -0.25>, <-0.7, 2.6, -0.65>, 0.11) texture { Copper } }
 union { Pipe(<1.0, -1.8, -0.4>, <0.7, 2.6, 0.25>, 0.14) texture { Steel } }
 
 // The cloud.
@@ -56,7 +56,7 @@ sphere {
     media {
       method 2 intervals 1 samples MS
       scattering { 1, rgb Density }
-      emission rgb <0.035, 0.045, 0.065>*Density
+      emission rgb <0.025, 0.032, 0.046>*Density
       density {
         spherical
         scale 0.78

@@ -2,7 +2,11 @@
 // Coloured glass: panes in layers, a checkered pane, a marbled pane, spheres and a vase, on a white floor (a finite box).
 // Look at the colours where shadows cross: red over blue, checks over green, and twice through the wall of each sphere.
 // Truth: ray-traced; filter and transmit only, no photons, no caustics, so light passes straight through.
+//
+// Declare=Resolution=1024 Declare=Samples=16   of the two maps
 #version 3.7;
+#ifndef (Resolution) #declare Resolution = 1024; #end
+#ifndef (Samples)    #declare Samples = 16; #end
 global_settings { assumed_gamma 1 max_trace_level 12 }
 
 camera {
@@ -15,12 +19,12 @@ camera {
 light_source {
   <-3.5, 8.5, 7>, rgb <1.0, 0.97, 0.92>*1.15
   spotlight point_at <0.3, 0, -0.6> radius 30 falloff 38
-  deep_shadow { resolution 1024 samples 16 }
+  deep_shadow { resolution Resolution samples Samples }
 }
 light_source {
   <5, 8, -8>, rgb <0.20, 0.23, 0.28>
   spotlight point_at 0 radius 26 falloff 34
-  deep_shadow { resolution 512 samples 16 }
+  deep_shadow { resolution Resolution samples Samples }
 }
 
 background { rgb <0.35, 0.40, 0.48> }

@@ -5,6 +5,7 @@
 //
 // Declare=Hairs=50000   number of hairs
 // Declare=Curl=1        0: straight hairs of one cylinder each
+// Declare=Resolution=512 Declare=Samples=16   of the three maps
 // Declare=White=0       1: everything matte white, so that the picture shows the shadows alone
 #version 3.7;
 global_settings { assumed_gamma 1 }
@@ -12,6 +13,8 @@ global_settings { assumed_gamma 1 }
 #ifndef (Hairs) #declare Hairs = 50000; #end
 #ifndef (Curl)  #declare Curl = 1; #end
 #ifndef (White) #declare White = 0; #end
+#ifndef (Resolution) #declare Resolution = 512; #end
+#ifndef (Samples)    #declare Samples = 16; #end
 
 #declare HairRadius = 0.001;
 #declare Segments = 12;       // cylinders a curled hair
@@ -22,35 +25,44 @@ global_settings { assumed_gamma 1 }
 camera {
   location <0, 3.6, -10.2>
   right x*image_width/image_height
-  look_at <0.2, -0.35, 0>
-  angle 34
+  look_at <0.2, -0.28, 0>
+  angle 36
 }
 
-#if (White) #declare Key = rgb 0.6; #declare Fill = rgb 0.6; #declare Rim = rgb 0.6;
-#else       #declare Key = rgb <1.30, 1.12, 0.90>; #declare Fill = rgb <0.16, 0.23, 0.36>; #declare Rim = rgb <0.75, 0.72, 0.80>;
+#if (White) // a third each, so that full light is 1
+  #declare Key = rgb 1/3;
+  #declare Fill = rgb 1/3;
+  #declare Rim = rgb 1/3;
+#else
+  #declare Key = rgb <1.30, 1.12, 0.90>;
+  #declare Fill = rgb <0.16, 0.23, 0.36>;
+  #declare Rim = rgb <0.75, 0.72, 0.80>;
 #end
 
 light_source {
   <-5.0, 8.0, -5.5>, Key
   spotlight point_at <0.1, -0.2, 0> radius 12 falloff 46
-  deep_shadow { resolution 512 samples 64 }
+  deep_shadow { resolution Resolution samples Samples }
 }
 light_source {
   <7.0, 5.5, -4.5>, Fill
   spotlight point_at <0, -0.2, 0> radius 12 falloff 46
-  deep_shadow { resolution 512 samples 64 }
+  deep_shadow { resolution Resolution samples Samples }
 }
 light_source {
   <1.5, 8.0, 6.5>, Rim
   spotlight point_at <0, -0.2, 0> radius 12 falloff 46
-  deep_shadow { resolution 512 samples 64 }
+  deep_shadow { resolution Resolution samples Samples }
 }
 
 #declare Matte = finish { ambient 0 diffuse 1 }
 #macro HairTexture(Colour)
   texture {
     #if (White) pigment { rgb 1 } finish { Matte }
-    #else pigment { spherical color_map { [0.05 rgb Colour*1.15] [0.5 rgb Colour*<0.45, 0.32, 0.25>] } scale 2.1 } finish { ambient 0 diffuse 0.9 specular 0.25 roughness 0.05 metallic 0.3 }
+    #else
+      // Dark at the root, light at the tip: by the distance from the middle of the ball.
+      pigment { spherical color_map { [0.05 rgb Colour*1.15] [0.5 rgb Colour*<0.45, 0.32, 0.25>] } scale 2.1 }
+      finish { ambient 0 diffuse 0.9 specular 0.25 roughness 0.05 metallic 0.3 }
     #end
   }
 #end
@@ -90,7 +102,8 @@ sphere {
           #local W = 2*pi*Turns*T + Ph;
           #local C = CurlRadius*(1 - pow(1 - T, 2))*(1.15 - 0.5*T);
           #local K = 1 - 0.88*(1 - pow(1 - T, 3));
-          #local To = <OX*K + Bend*Len*T*T + C*(cos(W) - cos(Ph)), Root.y + Len*T*(1 - 0.35*Bend*T), OZ*K + C*(sin(W) - sin(Ph))> + Stray*T*T;
+          #local To = Stray*T*T + <OX*K + Bend*Len*T*T + C*(cos(W) - cos(Ph)),
+            Root.y + Len*T*(1 - 0.35*Bend*T), OZ*K + C*(sin(W) - sin(Ph))>;
           cylinder { From, To, HairRadius*(1.2 - 0.5*T) }
           #local From = To;
         #end
@@ -106,8 +119,10 @@ sphere {
 #declare Spread = 1.5*sqrt(4/Tufts);
 #declare Model = array[Kinds]
 #for (J, 0, Used - 1)
-  #declare Model[J] = Tuft(max(1, int(Hairs/Tufts*(0.4 + 1.2*(J + 0.5)/Used) + 0.5)), min(0.5, Spread*(0.7 + 0.6*rand(Dice))), 0.70 + 0.35*rand(Dice), 0.10 + 0.55*rand(Dice),
-                           1.2 + 0.9*rand(Dice), 0.08 + 0.08*rand(Dice), 2*pi*rand(Dice))
+  #declare Model[J] = Tuft(
+    max(1, int(Hairs/Tufts*(0.4 + 1.2*(J + 0.5)/Used) + 0.5)),
+    min(0.5, Spread*(0.7 + 0.6*rand(Dice))), 0.70 + 0.35*rand(Dice), 0.10 + 0.55*rand(Dice),
+    1.2 + 0.9*rand(Dice), 0.08 + 0.08*rand(Dice), 2*pi*rand(Dice))
 #end
 
 #declare Deck = array[Kinds]

@@ -6,13 +6,15 @@
 #include <time.h>
 
 #include "bake/pack_tile.h"
+#include "bake/smooth_noise.h"
 #include "core/compress.h"
 #include "core/transmittance.h"
 
 enum { BATCH_RAYS = 4096 };   /* enough for a host to sort its objects by; a quarter of a megabyte of rays */
 
-/* The automatic tolerance is not below this: half of an 8-bit step. */
-static const double LEAST_TOLERANCE = 0.002;
+/* Limits of the automatic tolerance (DESIGN.md 1): half of an 8-bit step, and over sqrt(N) half of the worst
+ * noise that N rays can have (LV 4). */
+static const double LEAST_TOLERANCE = 0.002, LV_TOLERANCE = 0.25;
 
 static double seconds(void)
 {
@@ -30,6 +32,17 @@ static int paused(const bake_job *job)
 static double finest_tolerance(const dsm_settings *settings)
 {
   return settings->tolerance >= 0 ? settings->tolerance : LEAST_TOLERANCE;
+}
+
+/* Depth that a surface up to about 60 degrees from facing the light takes within a pixel's filter. */
+static noise_limits limits_of(const bake_job *job, uint32_t face_index)
+{
+  const face *f = &job->projection->faces[face_index];
+  double size = 2 * job->settings->filter_width * fmax(f->pixel_u, f->pixel_v);
+  double most = LV_TOLERANCE / sqrt(job->settings->samples);
+  int perspective = job->projection->perspective;
+  return (noise_limits){LEAST_TOLERANCE, fmax(most, LEAST_TOLERANCE), perspective ? size : 0,
+                        perspective ? 0 : size};
 }
 
 /* A merge in transmittance_build may already have cost this much, of a ray with volume spans. */
@@ -51,7 +64,7 @@ static dsm_result make_room(bake_scratch *s, uint32_t samples, uint32_t rays)
     if (!s->first || !s->weights || !s->order)
       return DSM_NO_MEMORY;
     s->room_samples = samples;
-    pixel_sample_pairs(samples, s->order);
+    pixel_sample_path(samples, s->order);
     for (uint32_t i = 0; i < samples; i++)
       s->weights[i] = 1.0 / samples;
   }
@@ -77,8 +90,8 @@ static void make_rays(const bake_job *job, uint32_t face_index, uint32_t x, uint
   }
 }
 
-/* Transmittances of the pixel's rays into s->transmittances, s->first. Tells whether any event is there, and whether any
- * is a volume span. */
+/* Transmittances of the pixel's rays into s->transmittances, s->first. Tells whether any event is there,
+ * and whether any is a volume span. */
 static dsm_result build_rays(const bake_job *job, bake_scratch *s, uint32_t first_ray, int *dimmed, int *volume)
 {
   uint32_t samples = job->settings->samples;
@@ -93,7 +106,8 @@ static dsm_result build_rays(const bake_job *job, bake_scratch *s, uint32_t firs
     for (size_t k = begin; k < end && !*volume; k++)
       *volume = s->sink.ordered[k].back > s->sink.ordered[k].front;
     s->first[i] = s->transmittances.count;
-    dsm_result result = transmittance_build(s->sink.ordered + begin, end - begin, tolerance, &s->transmittances);
+    dsm_result result = transmittance_build(s->sink.ordered + begin, end - begin, tolerance,
+                                            &s->transmittances);
     if (result != DSM_OK)
       return result;
   }
@@ -110,8 +124,8 @@ static int is_grey(const vertices *v)
 }
 
 /* Averages, compresses and keeps one pixel of the batch. */
-static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, uint32_t first_ray, baked_pixel *pixel,
-                             tile_tally *tally)
+static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, const noise_limits *limits,
+                             uint32_t first_ray, baked_pixel *pixel, tile_tally *tally)
 {
   uint32_t samples = job->settings->samples;
   *pixel = (baked_pixel){s->stored.count, 0, 0, 0};
@@ -129,15 +143,22 @@ static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, uint32_t firs
   result = average_sweep(&in, &s->heap, &s->average);
   if (result != DSM_OK)
     return result;
-  double tolerance = job->settings->tolerance;
-  if (tolerance < 0)
-    result = pixel_tolerance(&in, s->order, &s->average, LEAST_TOLERANCE, &s->noise, &tolerance);
-  if (result != DSM_OK)
-    return result;
+  pixel->coloured = !is_grey(&s->average);
+  int channels = pixel->coloured ? 3 : 1;
+  const vertices *clean = &s->average;
+  if (job->settings->tolerance < 0) {
+    s->smooth.count = 0;
+    result = noise_measure(&s->noise, &in, s->order, &s->average);
+    if (result == DSM_OK)
+      result = smooth_noise(&s->average, &s->noise, channels, limits, &s->relative, &s->smooth);
+    if (result != DSM_OK)
+      return result;
+    clean = &s->smooth;
+  }
+  double tolerance = finest_tolerance(job->settings);
   if (volume)
     tolerance = fmax(0, tolerance - spent_on_rays(job->settings));
-  pixel->coloured = !is_grey(&s->average);
-  result = compress_greedy(s->average.data, s->average.count, pixel->coloured ? 3 : 1, tolerance, &s->stored);
+  result = compress_greedy(clean->data, clean->count, channels, tolerance, &s->stored);
   pixel->count = s->stored.count - pixel->first;
   tally->vertices_in += s->average.count;
   return result;
@@ -172,6 +193,7 @@ static dsm_result trace_batch(const bake_job *job, bake_scratch *s, uint32_t ray
 static dsm_result bake_pixels(const bake_job *job, bake_scratch *s, const tile_key *key, tile_tally *tally)
 {
   tile_part part = part_on_face(&job->projection->faces[key->face], key);
+  noise_limits limits = limits_of(job, key->face);
   uint32_t samples = job->settings->samples, total = part.across * part.up;
   uint32_t batch = samples < BATCH_RAYS ? BATCH_RAYS / samples : 1;
   if (batch > total)
@@ -189,14 +211,15 @@ static dsm_result bake_pixels(const bake_job *job, bake_scratch *s, const tile_k
     result = paused(job) ? DSM_CANCELLED : trace_batch(job, s, count * samples, tally);
     for (uint32_t i = 0; i < count && result == DSM_OK; i++) {
       uint32_t place = (done + i) / part.across * TILE_SIDE + (done + i) % part.across;
-      result = paused(job) ? DSM_CANCELLED : bake_pixel(job, s, i * samples, &s->pixels[place], tally);
+      result = paused(job) ? DSM_CANCELLED : bake_pixel(job, s, &limits, i * samples, &s->pixels[place], tally);
     }
   }
   tally->pixels += total;
   return result;
 }
 
-dsm_result bake_tile(const bake_job *job, bake_scratch *s, const tile_key *key, const tile **out, tile_tally *tally)
+dsm_result bake_tile(const bake_job *job, bake_scratch *s, const tile_key *key, const tile **out,
+                     tile_tally *tally)
 {
   double start = seconds();
   uint64_t dropped = s->sink.dropped, clamped = s->sink.clamped;
@@ -229,5 +252,7 @@ void bake_scratch_free(bake_scratch *s)
   vertices_free(&s->average);
   vertices_free(&s->stored);
   average_free(&s->heap);
-  tolerance_free(&s->noise);
+  noise_free(&s->noise);
+  vertices_free(&s->smooth);
+  vertices_free(&s->relative);
 }

@@ -9,7 +9,7 @@
 #define DSM_BAKE_BAKE_TILE_H
 
 #include "bake/baked_pixel.h"
-#include "bake/pixel_tolerance.h"
+#include "bake/noise_profile.h"
 #include "core/average.h"
 #include "core/events.h"
 #include "core/pixel_sample.h"
@@ -28,17 +28,18 @@ typedef struct {
   dsm_ray *rays;
   size_t *first;        /* of a pixel's rays in `transmittances` */
   double *weights;
-  uint32_t *order;      /* pixel_sample_pairs */
+  uint32_t *order;      /* pixel_sample_path */
   uint32_t room_rays, room_samples;
   dsm_sink sink;
   vertices transmittances, average, stored;
   average_scratch heap;
-  tolerance_scratch noise;
+  noise_profile noise;
+  vertices smooth, relative;   /* the average without its noise, and a stretch of it */
   baked_pixel pixels[TILE_PIXELS];   /* vertices in `stored` */
 } bake_scratch;
 
-/* Bakes a tile. DSM_OK: *out is the new tile, or &tile_lit if nothing dims it. Other results leave *out NULL: those of
- * `trace`, DSM_CANCELLED if `pause` asked for it, DSM_NO_MEMORY. Adds to `tally`. */
+/* Bakes a tile. DSM_OK: *out is the new tile, or &tile_lit if nothing dims it. Other results leave *out
+ * NULL: those of `trace`, DSM_CANCELLED if `pause` asked for it, DSM_NO_MEMORY. Adds to `tally`. */
 dsm_result bake_tile(const bake_job *job, bake_scratch *scratch, const tile_key *key, const tile **out,
                      tile_tally *tally);
 void bake_scratch_free(bake_scratch *scratch);

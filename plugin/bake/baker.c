@@ -28,12 +28,15 @@ dsm_result baker_worker_create(dsm_map *map, void *host_data, dsm_worker **worke
 {
   *worker = NULL;
   baker *b = calloc(1, sizeof *b);
-  if (!b)
-    return DSM_NO_MEMORY;
-  b->maker = (tile_maker){make, destroy};
-  b->job = (bake_job){&map->host, host_data, &map->projection, &map->settings};
-  dsm_result result = worker_create(map, host_data, &b->maker, worker);
+  dsm_result result = DSM_NO_MEMORY;
+  if (b) {
+    b->maker = (tile_maker){make, destroy};
+    b->job = (bake_job){&map->host, host_data, &map->projection, &map->settings};
+    result = worker_create(map, host_data, &b->maker, worker);
+    if (result != DSM_OK)
+      destroy(&b->maker);
+  }
   if (result != DSM_OK)
-    destroy(&b->maker);
+    map_report(map, 2, "There is no memory for a thread's part in a deep shadow map.");
   return result;
 }

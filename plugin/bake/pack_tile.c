@@ -3,12 +3,14 @@
 
 #include <math.h>
 
-/* Half a step of a float is 2^-25 to 2^-24 of its size; four times that keeps a receiver in front of its own step. */
+/* Half a step of a float is 2^-25 to 2^-24 of its size; four times that keeps a receiver in front of its own
+ * step. */
 static const double DEPTH_ROUNDING = 0x1p-22;
 
-/* Counts what is left of a pixel when only the first and last of vertices at one float depth stay, and copies it if
- * `depth` is not NULL. Middle ones say nothing: a step is two vertices. */
-static size_t pack_pixel(const vertex *v, size_t count, int channels, double near_depth, float *depth, float *value)
+/* Counts what is left of a pixel when only the first and last of vertices at one float depth stay, and copies
+ * it if `depth` is not NULL. Middle ones say nothing: a step is two vertices. */
+static size_t pack_pixel(const vertex *v, size_t count, int channels, double near_depth, float *depth,
+                         float *value)
 {
   size_t n = 0;
   float last = 0, before = 0;   /* the depths of the last two kept */
@@ -68,7 +70,9 @@ dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, co
     baked_pixel *p = &pixels[i];
     int channels = p->coloured ? 3 : 1;
     pixel[i].start = at;
-    pixel[i].word = p->marked ? PIXEL_MARKED : (uint32_t)kept[i] | (kept[i] && p->coloured ? PIXEL_COLOURED : 0);
+    pixel[i].word = p->marked ? PIXEL_MARKED : (uint32_t)kept[i];
+    if (kept[i] && p->coloured)
+      pixel[i].word |= PIXEL_COLOURED;
     if (kept[i])
       pack_pixel(stored->data + p->first, p->count, channels, near_depth, data + at, data + at + kept[i]);
     p->count = kept[i];

@@ -50,17 +50,19 @@ static void clip(polygon *poly, const double n[3])
     if ((da > 0 && db < 0) || (da < 0 && db > 0)) {
       double t = da / (da - db);
       if (out.n < 8)
-        out.p[out.n++] = (point3){{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])}};
+        out.p[out.n++] = (point3){{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]),
+                                   a[2] + t * (b[2] - a[2])}};
     }
   }
   *poly = out;
 }
 
-/* The box's surface, cut by the pyramid over the window, projected. The rays that hit the box hit its surface, so the
- * corners of what is left bound them; the light is not inside. */
+/* The box's surface, cut by the pyramid over the window, projected. The rays that hit the box hit its
+ * surface, so the corners of what is left bound them; the light is not inside. */
 static int clipped_area(const point3 corner[8], const rectangle *w, rectangle *area)
 {
-  static const int sides[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
+  static const int sides[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                  {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
   const double plane[4][3] = {{1, 0, -w->u0}, {-1, 0, w->u1}, {0, 1, -w->v0}, {0, -1, w->v1}};
   double size = 0;
   for (int k = 0; k < 8; k++)
@@ -147,8 +149,8 @@ static void add_orthographic(outline *sum, const double origin[3], const frame *
   include_depths(sum, fmax(0, nearest), farthest);
 }
 
-void outline_add(outline *sum, const double origin[3], const frame *axes, int perspective, const rectangle *window,
-                 const dsm_box *box)
+void outline_add(outline *sum, const double origin[3], const frame *axes, int perspective,
+                 const rectangle *window, const dsm_box *box)
 {
   if (perspective)
     add_perspective(sum, origin, axes, window, box);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* What of an axis-aligned box a face can see: the rectangle that it covers on the image plane, and its depths. */
+/* What of an axis-aligned box a face can see: the rectangle that it covers on the image plane, and its
+ * depths. */
 #ifndef DSM_CORE_BOX_OUTLINE_H
 #define DSM_CORE_BOX_OUTLINE_H
 
@@ -14,9 +15,10 @@ typedef struct {
 
 #define OUTLINE_EMPTY ((outline){{INFINITY, INFINITY, -INFINITY, -INFINITY}, INFINITY, -INFINITY})
 
-/* Grows `sum` by what of the box lies in front of the light and inside `window`. Exact for perspective up to rounding; a
- * box that touches the light covers the window. Depths are those of the whole box (perspective: distances). */
-void outline_add(outline *sum, const double origin[3], const frame *axes, int perspective, const rectangle *window,
-                 const dsm_box *box);
+/* Grows `sum` by what of the box lies in front of the light and inside `window`. Exact for perspective up to
+ * rounding; a box that touches the light covers the window. Depths are those of the whole box (perspective:
+ * distances). */
+void outline_add(outline *sum, const double origin[3], const frame *axes, int perspective,
+                 const rectangle *window, const dsm_box *box);
 
 #endif

@@ -6,11 +6,11 @@
 
 #include "core/box_outline.h"
 
-static const double COS_WIDEST = 0.5;   /* 60 degrees: beyond, a perspective pixel at the rim is 1/8 as large as one
-                                           in the middle, and a cube serves better */
+static const double COS_WIDEST = 0.5;   /* 60 degrees: beyond, a perspective pixel at the rim is 1/8 as
+                                           large as one in the middle, and a cube serves better */
 
-/* Pixels on each side that see no caster. One whole pixel must lie between the casters' outline and the centre of
- * the outermost pixel's filter support. */
+/* Pixels on each side that see no caster. One whole pixel must lie between the casters' outline and the
+ * centre of the outermost pixel's filter support. */
 static uint32_t margin_pixels(double filter_width)
 {
   return (uint32_t)ceil(0.5 * filter_width + 0.5);
@@ -32,6 +32,8 @@ static void lay_grid(face *f, const outline *seen, uint32_t margin, double pixel
   f->height = inner_v + 2 * margin;
   f->pixel_u = pixel_u;
   f->pixel_v = pixel_v;
+  f->per_u = 1 / pixel_u;
+  f->per_v = 1 / pixel_v;
   f->u0 = 0.5 * (a->u0 + a->u1) - 0.5 * f->width * pixel_u;
   f->v0 = 0.5 * (a->v0 + a->v1) - 0.5 * f->height * pixel_v;
   /* room for the rounding of a host's own depths at the very front and back */
@@ -40,7 +42,8 @@ static void lay_grid(face *f, const outline *seen, uint32_t margin, double pixel
   f->far_depth = seen->far_depth + slack;
 }
 
-/* Pixel size for areas up to `across` x `up`; `least` keeps it above rounding where casters are points or lines. */
+/* Pixel size for areas up to `across` x `up`; `least` keeps it above rounding where casters are points or
+ * lines. */
 static void pixel_size(const uint32_t resolution[2], uint32_t margin, double across, double up, double least,
                        double size[2])
 {
@@ -52,7 +55,8 @@ static void pixel_size(const uint32_t resolution[2], uint32_t margin, double acr
     size[0] = size[1] = fmax(fmax(across, up) / inner_pixels(resolution[0], margin), least);
 }
 
-static outline outline_of(const dsm_light *light, const projection *p, const frame *axes, const rectangle *window)
+static outline outline_of(const dsm_light *light, const projection *p, const frame *axes,
+                          const rectangle *window)
 {
   outline sum = OUTLINE_EMPTY;
   for (uint64_t i = 0; i < light->caster_count; i++)
@@ -69,10 +73,10 @@ static void clamp_to(rectangle *a, const rectangle *w)
   a->v1 = fmax(w->v0, fmin(w->v1, a->v1));
 }
 
-/* Casters just outside the window reach into it through the filter: they are looked for in the window widened by the
- * margin at its largest. */
-static outline outline_near(const dsm_light *light, const projection *p, const frame *axes, const rectangle *window,
-                            const uint32_t resolution[2], uint32_t margin)
+/* Casters just outside the window reach into it through the filter: they are looked for in the window widened
+ * by the margin at its largest. */
+static outline outline_near(const dsm_light *light, const projection *p, const frame *axes,
+                            const rectangle *window, const uint32_t resolution[2], uint32_t margin)
 {
   double size[2];
   pixel_size(resolution, margin, window->u1 - window->u0, window->v1 - window->v0, 0, size);
@@ -83,8 +87,8 @@ static outline outline_near(const dsm_light *light, const projection *p, const f
   return seen;
 }
 
-static void fit_one(const dsm_light *light, projection *p, const rectangle *window, const uint32_t resolution[2],
-                    uint32_t margin)
+static void fit_one(const dsm_light *light, projection *p, const rectangle *window,
+                    const uint32_t resolution[2], uint32_t margin)
 {
   face *f = &p->faces[0];
   f->axes = p->axes;
@@ -126,8 +130,10 @@ static frame cube_axes(const frame *base, int index)
 }
 
 /* All faces of a cube have pixels of one size, so that shadows keep their softness across edges; the largest
- * face has the resolution asked for. `half` is set for spotlights up to 90 degrees, which leave the back dark. */
-static void fit_cube(const dsm_light *light, projection *p, int half, const uint32_t resolution[2], uint32_t margin)
+ * face has the resolution asked for. `half` is set for spotlights up to 90 degrees, which leave the back
+ * dark. */
+static void fit_cube(const dsm_light *light, projection *p, int half, const uint32_t resolution[2],
+                     uint32_t margin)
 {
   outline seen[MAX_FACES];
   double across = 0, up = 0;
@@ -183,9 +189,10 @@ static int narrow_view(const dsm_light *light, double direction[3])
   /* a cone of less than 90 degrees is convex: it holds a box if it holds the corners */
   for (uint64_t k = 0; k < light->caster_count; k++)
     for (int corner = 0; corner < 8; corner++) {
+      const dsm_box *box = &light->casters[k];
       double along = 0, square = 0;
       for (int i = 0; i < 3; i++) {
-        double q = ((corner >> i & 1) ? light->casters[k].high[i] : light->casters[k].low[i]) - light->origin[i];
+        double q = ((corner >> i & 1) ? box->high[i] : box->low[i]) - light->origin[i];
         along += q * direction[i];
         square += q * q;
       }

@@ -23,8 +23,8 @@ static uint32_t sobol_second(uint32_t index)
   return x;
 }
 
-/* Nested uniform scrambling of a reversed number by a hash in which each bit depends on lower bits only: Laine and
- * Karras 2011, as used by Burley 2020, with the better constants of Vegdahl 2021. */
+/* Nested uniform scrambling of a reversed number by a hash in which each bit depends on lower bits only:
+ * Laine and Karras 2011, as used by Burley 2020, with the better constants of Vegdahl 2021. */
 static uint32_t scramble(uint32_t reversed, uint32_t seed)
 {
   uint32_t x = reversed;
@@ -118,7 +118,7 @@ static int compare_places(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-void pixel_sample_pairs(uint32_t count, uint32_t *order)
+void pixel_sample_path(uint32_t count, uint32_t *order)
 {
   for (uint32_t i = 0; i < count; i++)
     order[i] = i;

@@ -2,12 +2,12 @@
 /*
  * Where the rays of a pixel go (LV 3.2).
  *
- * The points are the first `count` of a two-dimensional Sobol' sequence with nested uniform (Owen) scrambling, a
- * different one a pixel. Whatever `count` is, the unit square's dyadic boxes hold their share of it: at 16 points
- * every cell of a 4 x 4 grid, every column of 16 and every row of 16 holds one. An edge then has the error of
- * jittered sampling, O(N^-3/4), an axis-aligned one and smooth smoke less; `count` need not be a square; and no
- * table is kept. Filters are sampled by their density (inverse of the distribution function in x and y), so that
- * all rays weigh 1/count and none is spent where the filter hardly counts.
+ * The points are the first `count` of a two-dimensional Sobol' sequence with nested uniform (Owen)
+ * scrambling, a different one a pixel. Whatever `count` is, the unit square's dyadic boxes hold their share
+ * of it: at 16 points every cell of a 4 x 4 grid, every column of 16 and every row of 16 holds one. An edge
+ * then has the error of jittered sampling, O(N^-3/4), an axis-aligned one and smooth smoke less; `count` need
+ * not be a square; and no table is kept. Filters are sampled by their density (inverse of the distribution
+ * function in x and y), so that all rays weigh 1/count and none is spent where the filter hardly counts.
  */
 #ifndef DSM_CORE_PIXEL_SAMPLE_H
 #define DSM_CORE_PIXEL_SAMPLE_H
@@ -21,8 +21,9 @@ pixel_seed pixel_sample_seed(uint32_t face, uint32_t x, uint32_t y);
 /* Offset of sample `index` from the pixel's centre in map pixels, within ± width/2. */
 void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, uint32_t index, double offset[2]);
 
-/* A permutation of 0 … count-1 in which the samples at places 2k and 2k+1 lie in neighbouring strata, in every pixel:
- * scrambling maps dyadic boxes to dyadic boxes. Their differences measure a pixel's sampling error. */
-void pixel_sample_pairs(uint32_t count, uint32_t *order);
+/* A permutation of 0 … count-1 that visits the strata along a path: neighbours in it share a small dyadic
+ * box, in every pixel, as scrambling maps dyadic boxes to dyadic boxes. Their differences measure a pixel's
+ * sampling error. */
+void pixel_sample_path(uint32_t count, uint32_t *order);
 
 #endif

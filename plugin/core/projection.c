@@ -39,8 +39,8 @@ frame frame_along(const double forward[3])
   return f;
 }
 
-/* Whether the face can say anything about pixel coordinates x, y; false for NaN. Half a pixel beyond the grid the
- * bilinear neighbours are all outside. */
+/* Whether the face can say anything about pixel coordinates x, y; false for NaN. Half a pixel beyond the grid
+ * the bilinear neighbours are all outside. */
 static int touches(const face *f, double x, double y)
 {
   return x > -0.5 && x < f->width + 0.5 && y > -0.5 && y < f->height + 0.5;
@@ -57,10 +57,11 @@ static uint32_t add_hit(const projection *p, uint32_t index, const double q[3], 
     return 0;
   double u = dot(q, f->axes.right), v = dot(q, f->axes.up);
   if (p->perspective) {
-    u /= z;
-    v /= z;
+    double nearness = 1 / z;
+    u *= nearness;
+    v *= nearness;
   }
-  double x = (u - f->u0) / f->pixel_u, y = (v - f->v0) / f->pixel_v;
+  double x = (u - f->u0) * f->per_u, y = (v - f->v0) * f->per_v;
   if (!touches(f, x, y))
     return 0;
   double depth = p->perspective ? sqrt(dot(q, q)) : z;

@@ -2,15 +2,15 @@
 /*
  * The faces of a map and the way between points, pixels and rays.
  *
- *   up (v) ^        A face is a grid of pixels on an image plane in front of the light. Perspective faces use
- *          |        tangent coordinates: a point (x, y, z) in the frame right, up, forward lies at u = x/z, v = y/z.
- *   origin +--> z   Orthographic faces use u = x, v = y in scene units. Pixel (i, j) covers
- *           \       [u0 + i pixel_u, u0 + (i+1) pixel_u] x [v0 + j pixel_v, …]; in pixel coordinates its centre is
+ *   up (v) ^        A face is a grid of pixels on an image plane in front of the light. Perspective faces
+ *          |        use tangent coordinates: a point (x, y, z) in the frame right, up, forward lies at
+ *   origin +--> z   u = x/z, v = y/z. Orthographic faces use u = x, v = y in scene units. Pixel (i, j) covers
+ *           \       u0 + i pixel_u … u0 + (i+1) pixel_u, and so on up; in pixel coordinates its centre is
  *            right  (i + 1/2, j + 1/2).
  *
- * Every face has a margin around the casters so wide that its outermost pixels see none: what lies farther out is
- * lit, and no seam shows. The faces of a cube overlap by that margin; points within half a pixel of an edge
- * are answered by both faces (three at a corner), with weights that make the answer continuous.
+ * Every face has a margin around the casters so wide that its outermost pixels see none: what lies farther
+ * out is lit, and no seam shows. The faces of a cube overlap by that margin; points within half a pixel of an
+ * edge are answered by both faces (three at a corner), with weights that make the answer continuous.
  */
 #ifndef DSM_CORE_PROJECTION_H
 #define DSM_CORE_PROJECTION_H
@@ -23,6 +23,7 @@ typedef struct {
   frame axes;
   double u0, v0;                 /* the lower corner of pixel (0, 0) */
   double pixel_u, pixel_v;       /* a pixel's size: tangents or scene units */
+  double per_u, per_v;           /* pixels a unit: 1/pixel_u, 1/pixel_v */
   double near_depth, far_depth;  /* of the casters in the face */
   uint32_t width, height;        /* 0 x 0: no casters, all lit */
 } face;
@@ -47,8 +48,8 @@ typedef struct {
   double u, v;
 } projected;
 
-/* Fills `hits` with the faces that answer for `point`; `hits[i].face` with zero pixels or x, y outside are left out, so
- * that the weights may add up to less than 1: the rest is lit. 0: lit. */
+/* Fills `hits` with the faces that answer for `point`; `hits[i].face` with zero pixels or x, y outside are
+ * left out, so that the weights may add up to less than 1: the rest is lit. 0: lit. */
 uint32_t projection_find(const projection *p, const double point[3], projected hits[3]);
 
 /* The light ray through pixel coordinates x, y of a face that has pixels. */

@@ -8,8 +8,8 @@ static double dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Steeper than this a plane counts as running through the light. Keeps numbers finite: infinity times an offset of
- * 0 would be NaN. */
+/* Steeper than this a plane counts as running through the light. Keeps numbers finite: infinity times an
+ * offset of 0 would be NaN. */
 static const double STEEPEST = 1e30;
 
 static double quotient(double a, double b)
@@ -18,9 +18,10 @@ static double quotient(double a, double b)
   return q > STEEPEST ? STEEPEST : q < -STEEPEST ? -STEEPEST : q == q ? q : 0;
 }
 
-receiver_plane receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound, double bias)
+receiver_plane receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound, double half,
+                                   double bias)
 {
-  receiver_plane plane = {0, 0, 0, 0, 0};
+  receiver_plane plane = {0, 0, 0, 0, 0, 0};
   const face *f = &p->faces[at->face];
   const double *normal = bound->normal;
   if (bias >= 0) {
@@ -33,6 +34,8 @@ receiver_plane receiver_plane_seen(const projection *p, const projected *at, con
     /* nu u + nv v + nz z = d: depth falls by nu/nz a unit of u */
     plane.slope_u = quotient(nu * f->pixel_u, nz);
     plane.slope_v = quotient(nv * f->pixel_v, nz);
+    plane.reach = half * (fabs(plane.slope_u) + fabs(plane.slope_v));
+    plane.middle = 0.25 * plane.reach;
     return plane;
   }
   /* Along the unit direction w through tangents (u, v) the plane lies at depth d / (n·w), where d = n·(point - light).
@@ -43,8 +46,11 @@ receiver_plane receiver_plane_seen(const projection *p, const projected *at, con
   double m = nu * at->u + nv * at->v + nz, g = m / len;
   plane.slope_u = quotient((nu - m * at->u / len2) / len * f->pixel_u, g);
   plane.slope_v = quotient((nv - m * at->v / len2) / len * f->pixel_v, g);
-  double pixel = fmax(f->pixel_u, f->pixel_v);
-  plane.curve = quotient(0.5 * pixel * pixel, fabs(g));
+  double pixel = fmax(f->pixel_u, f->pixel_v), far_corner = 1 + half;
+  double slope = half * (fabs(plane.slope_u) + fabs(plane.slope_v));
+  double curve = quotient(0.5 * pixel * pixel * 2 * far_corner * far_corner, fabs(g));
+  plane.reach = slope + curve;
+  plane.middle = 0.25 * slope + curve;
   plane.depth = at->depth;
   return plane;
 }

@@ -21,8 +21,8 @@ const dsm_parameter settings_table[WORD_COUNT] = {
     "scene units by which a surface is moved toward the light before its shadow is looked up"},
 };
 
-/* Widths in map pixels where a scene names a filter without one: a box tiles the map, the others overlap by half,
- * as RenderMan's 2 x 2 default. */
+/* Widths in map pixels where a scene names a filter without one: a box tiles the map, the others overlap by
+ * half, as RenderMan's 2 x 2 default. */
 static const double default_width[] = { [FILTER_BOX] = 1, [FILTER_TRIANGLE] = 2, [FILTER_GAUSSIAN] = 2 };
 
 void settings_defaults(dsm_settings *settings)
@@ -112,8 +112,8 @@ static int in_range(const dsm_parameter *row, double x)
       && (!row->integral || x == floor(x));
 }
 
-static dsm_result check(const dsm_parameter *row, const char *word, const double *numbers, uint32_t count, int *chosen,
-                        sentence *why)
+static dsm_result check(const dsm_parameter *row, const char *word, const double *numbers, uint32_t count,
+                        int *chosen, sentence *why)
 {
   if (row->type == DSM_CHOICE) {
     *chosen = word ? choice_index(row->choices, word) : -1;

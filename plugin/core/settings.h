@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* The words of a deep_shadow { } block: the published table, and the checked values that a map is built with. */
+/* The words of a deep_shadow { } block: the published table, and the checked values that a map is built
+ * with. */
 #ifndef DSM_CORE_SETTINGS_H
 #define DSM_CORE_SETTINGS_H
 
 #include "dsm.h"
 
-typedef enum { FILTER_BOX, FILTER_TRIANGLE, FILTER_GAUSSIAN } filter_kind;   /* in the order of the table's words */
+typedef enum { FILTER_BOX, FILTER_TRIANGLE, FILTER_GAUSSIAN } filter_kind;   /* as the table orders them */
 
 /* Indices into settings_table. */
 enum { WORD_RESOLUTION, WORD_SAMPLES, WORD_TOLERANCE, WORD_FILTER, WORD_BIAS, WORD_COUNT };

@@ -9,8 +9,9 @@
 
 #include "core/face_fit.h"
 
-/* A filter's support is enlarged by this before the receiver's plane is searched for its nearest depth: receivers are
- * rarely quite flat, and an eighth of a pixel on each side costs a contact shadow nothing visible. */
+/* A filter's support is enlarged by this before the receiver's plane is searched for its nearest depth:
+ * receivers are rarely quite flat, and an eighth of a pixel on each side costs a contact shadow nothing
+ * visible. */
 static const double FOOTPRINT_SAFETY = 1.25;
 
 static const double LARGEST = 1e150;   /* squares of lengths must stay finite */
@@ -138,14 +139,14 @@ void map_count_tile(dsm_map *map, const tile_tally *tally, int failed)
 
   if (tell_events) {
     char text[200];
-    snprintf(text, sizeof text, "A deep shadow map was given events with impossible numbers; in the first such tile "
-             "%llu were dropped and %llu corrected.", (unsigned long long)tally->events_dropped,
+    snprintf(text, sizeof text, "A deep shadow map was given events with impossible numbers; in the first such "
+             "tile %llu were dropped and %llu corrected.", (unsigned long long)tally->events_dropped,
              (unsigned long long)tally->events_clamped);
     map_report(map, 1, text);
   }
   if (tell_failure)
-    map_report(map, 1, "A tile of a deep shadow map could not be baked (is there too little memory?); shadows there "
-               "are ray-traced.");
+    map_report(map, 1, "A tile of a deep shadow map could not be baked (is there too little memory?); shadows "
+               "there are ray-traced.");
 }
 
 void map_statistics(const dsm_map *map, dsm_statistics *out)

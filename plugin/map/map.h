@@ -30,11 +30,13 @@ struct dsm_map {
 };
 
 /* Published; see dsm.h. */
-dsm_result map_create(const dsm_host *host, const dsm_light *light, const dsm_settings *settings, dsm_map **map);
+dsm_result map_create(const dsm_host *host, const dsm_light *light, const dsm_settings *settings,
+                      dsm_map **map);
 void map_destroy(dsm_map *map);
 void map_statistics(const dsm_map *map, dsm_statistics *out);
 
-/* Counts a tile that has just been baked, or failed, and tells the host once a map of bad events and of failure. */
+/* Counts a tile that has just been baked, or failed, and tells the host once a map of bad events and of
+ * failure. */
 void map_count_tile(dsm_map *map, const tile_tally *tally, int failed);
 
 void map_report(const dsm_map *map, int32_t severity, const char *sentence);

@@ -7,8 +7,8 @@
  *   +--------+-----------+-----------+-----+-------------------------------------------------+
  *              one word pair each: where its floats start, how many vertices, flags
  *
- * Depths are floats relative to the tile's near depth, a double: the nearest vertex of the tile itself, so that a
- * float's 24 bits cover the tile's range of depths and not the light's distance.
+ * Depths are floats relative to the tile's near depth, a double: the nearest vertex of the tile itself, so that
+ * a float's 24 bits cover the tile's range of depths and not the light's distance.
  */
 #ifndef DSM_MAP_TILE_H
 #define DSM_MAP_TILE_H

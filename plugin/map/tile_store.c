@@ -29,7 +29,8 @@ static int create_locks(tile_store *store)
   if (pthread_condattr_init(&attributes))
     return 0;
   /* the monotonic clock: nobody sets it back while a thread waits */
-  int ok = !pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC) && !pthread_cond_init(&store->changed, &attributes);
+  int ok = !pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC)
+        && !pthread_cond_init(&store->changed, &attributes);
   pthread_condattr_destroy(&attributes);
   if (ok && pthread_mutex_init(&store->mutex, NULL)) {
     pthread_cond_destroy(&store->changed);
@@ -49,7 +50,7 @@ dsm_result tile_store_create(tile_store *store, const projection *p)
     size_t count = (size_t)grid->across * grid->up;
     if (count == 0)
       continue;
-    grid->slots = calloc(count, sizeof *grid->slots);   /* all bits zero is a null pointer on every POSIX system */
+    grid->slots = calloc(count, sizeof *grid->slots);   /* all bits zero is NULL on every POSIX system */
     if (!grid->slots) {
       free_grids(store);
       return DSM_NO_MEMORY;

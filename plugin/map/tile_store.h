@@ -7,8 +7,8 @@
  *      ^                 |
  *      +---- abandon ----+   (cancelled)
  *
- * A slot holds NULL until its tile is published, and then that tile for good: readers load it with acquire and need
- * no lock. Claims are kept in a short list under a mutex; a thread that needs a claimed tile sleeps at most
+ * A slot holds NULL until its tile is published, and then that tile for good: readers load it with acquire and
+ * need no lock. Claims are kept in a short list under a mutex; a thread that needs a claimed tile sleeps at most
  * 20 ms at a time and asks its host in between whether to give up.
  */
 #ifndef DSM_MAP_TILE_STORE_H
@@ -56,8 +56,8 @@ static inline const tile *tile_store_peek(const tile_store *store, const tile_ke
   return atomic_load_explicit(tile_store_slot(store, key), memory_order_acquire);
 }
 
-/* Gets the tile, waiting for its baker if there is one. DSM_OK with *out NULL: nobody has it, the caller holds the
- * claim now and must publish or abandon it. DSM_CANCELLED: `pause` said so. */
+/* Gets the tile, waiting for its baker if there is one. DSM_OK with *out NULL: nobody has it, the caller
+ * holds the claim now and must publish or abandon it. DSM_CANCELLED: `pause` said so. */
 dsm_result tile_store_claim(tile_store *store, const tile_key *key, tile_claim *claim,
                             int32_t (*pause)(void *data), void *data, const tile **out);
 /* Both end the claim and wake those who wait. `t` belongs to the store from now on. */

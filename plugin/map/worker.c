@@ -30,7 +30,8 @@ dsm_result worker_need_tile(dsm_worker *worker, const tile_key *key, const tile 
   *out = NULL;
   if (worker->baking)
     return DSM_TRACE;
-  dsm_result result = tile_store_claim(&map->store, key, &worker->claim, map->host.pause, worker->host_data, out);
+  dsm_result result = tile_store_claim(&map->store, key, &worker->claim, map->host.pause, worker->host_data,
+                                       out);
   if (result != DSM_OK || *out)
     return result;
 

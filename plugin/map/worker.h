@@ -7,13 +7,14 @@
 
 /* Makes a tile that its caller has claimed. The baker is above this room (bake/baker.h) and hands itself in. */
 typedef struct tile_maker {
-  /* DSM_OK: *out is a new tile or &tile_lit. DSM_CANCELLED, DSM_NO_MEMORY, …: nothing made. `tally` is zeroed. */
+  /* DSM_OK: *out is a new tile or &tile_lit. DSM_CANCELLED, DSM_NO_MEMORY, …: nothing made. `tally` is
+   * zeroed. */
   dsm_result (*make)(struct tile_maker *maker, const tile_key *key, const tile **out, tile_tally *tally);
   void (*destroy)(struct tile_maker *maker);
 } tile_maker;
 
-/* Where the last search in a pixel ended (LV 3.4). A direct-mapped cache without tags: pixels 32 apart share a place,
- * and a wrong hint only costs its search some steps. */
+/* Where the last search in a pixel ended (LV 3.4). A direct-mapped cache without tags: pixels 32 apart share
+ * a place, and a wrong hint only costs its search some steps. */
 #define HINT_SIDE 32
 
 struct dsm_worker {
@@ -29,7 +30,8 @@ struct dsm_worker {
 dsm_result worker_create(dsm_map *map, void *host_data, tile_maker *maker, dsm_worker **worker);
 void worker_destroy(dsm_worker *worker);
 
-/* The tile, baked or waited for. DSM_OK, DSM_TRACE (called from within the worker's own bake), DSM_CANCELLED. */
+/* The tile, baked or waited for. DSM_OK, DSM_TRACE (called from within the worker's own bake),
+ * DSM_CANCELLED. */
 dsm_result worker_need_tile(dsm_worker *worker, const tile_key *key, const tile **out);
 
 static inline dsm_result worker_tile(dsm_worker *worker, const tile_key *key, const tile **out)

@@ -21,7 +21,6 @@ namespace pov
 namespace
 {
 
-const unsigned int kLeafObjects = 4;
 const unsigned int kMostOutsized = 16;
 
 /// A caster this many times larger than all smaller ones together stays out of the maps.
@@ -99,15 +98,6 @@ struct LargerFirst
 	bool operator()(unsigned int a, unsigned int b) const { return (size[a] != size[b]) ? (size[a] > size[b]) : (a < b); }
 };
 
-struct CentreLess
-{
-	const vector<dsm_box>& boxes;
-	int axis;
-	CentreLess(const vector<dsm_box>& b, int a) : boxes(b), axis(a) { }
-	double Centre(unsigned int i) const { return boxes[i].low[axis] + boxes[i].high[axis]; }
-	bool operator()(unsigned int a, unsigned int b) const { return (Centre(a) != Centre(b)) ? (Centre(a) < Centre(b)) : (a < b); }
-};
-
 }
 
 ShadowCasters::ShadowCasters(const SceneData& scene) : hasVolumes(false), hasUnmappedVolumes(false)
@@ -136,13 +126,7 @@ ShadowCasters::ShadowCasters(const SceneData& scene) : hasVolumes(false), hasUnm
 	for(vector<ObjectPtr>::const_iterator i(unmapped.begin()); i != unmapped.end(); i++)
 		hasUnmappedVolumes = hasUnmappedVolumes || HasVolume(*i);
 
-	for(unsigned int i = 0; i < objects.size(); i++)
-		order.push_back(i);
-	if(!objects.empty())
-	{
-		nodes.reserve(objects.size());
-		Build(0, objects.size());
-	}
+	tree.reset(new ShadowTree(boxes));
 }
 
 /// A floor of 10,000 units with a few objects on it, or a sky around everything, would make the rest of the scene one
@@ -197,50 +181,6 @@ void ShadowCasters::SplitOffOutsized()
 	boxes.swap(keptBoxes);
 }
 
-/// Median split along the longest axis of the boxes' centres.
-unsigned int ShadowCasters::Build(unsigned int first, unsigned int count)
-{
-	const unsigned int index = nodes.size();
-	Node node;
-	dsm_box centres;
-
-	node.box = boxes[order[first]];
-	for(int axis = 0; axis < 3; axis++)
-		centres.low[axis] = centres.high[axis] = node.box.low[axis] + node.box.high[axis];
-	for(unsigned int i = first + 1; i < first + count; i++)
-	{
-		Include(node.box, boxes[order[i]]);
-		for(int axis = 0; axis < 3; axis++)
-		{
-			const double centre = boxes[order[i]].low[axis] + boxes[order[i]].high[axis];
-			centres.low[axis] = min(centres.low[axis], centre);
-			centres.high[axis] = max(centres.high[axis], centre);
-		}
-	}
-
-	node.first = first;
-	node.count = count;
-	node.left = node.right = 0;
-	nodes.push_back(node);
-	if(count <= kLeafObjects)
-		return index;
-
-	int axis = 0;
-	for(int i = 1; i < 3; i++)
-		if(centres.high[i] - centres.low[i] > centres.high[axis] - centres.low[axis])
-			axis = i;
-
-	const unsigned int half = count / 2;
-	std::nth_element(order.begin() + first, order.begin() + first + half, order.begin() + first + count, CentreLess(boxes, axis));
-
-	const unsigned int left = Build(first, half);
-	const unsigned int right = Build(first + half, count - half);
-	nodes[index].count = 0;
-	nodes[index].left = left;
-	nodes[index].right = right;
-	return index;
-}
-
 bool ShadowCasters::IsUnmapped(const ObjectBase *object) const
 {
 	for(vector<ObjectPtr>::const_iterator i(unmapped.begin()); i != unmapped.end(); i++)
@@ -257,76 +197,6 @@ void ShadowCasters::Containing(const Vector3d& point, TraceThreadData *thread, v
 		if((point[X] >= box.low[X]) && (point[X] <= box.high[X]) && (point[Y] >= box.low[Y]) && (point[Y] <= box.high[Y]) &&
 		   (point[Z] >= box.low[Z]) && (point[Z] <= box.high[Z]) && (objects[i]->interior != NULL) && objects[i]->Inside(*point, thread))
 			out.push_back(objects[i]);
-	}
-}
-
-ShadowCasters::Walk::Walk(const ShadowCasters& c, const dsm_ray& r) : casters(c), ray(r), leafItem(0), leafEnd(0)
-{
-	for(int i = 0; i < 3; i++)
-		inverse[i] = 1.0 / ray.direction[i];
-	if(!casters.nodes.empty())
-		Push(0);
-}
-
-/// Slabs in double, however far away the light is. A direction along a face gives infinities of the right sign; a
-/// NaN (an origin on the face as well) leaves that slab out of account.
-bool ShadowCasters::Walk::Cross(const dsm_box& box, double& enter, double& leave) const
-{
-	enter = ray.near_depth;
-	leave = ray.far_depth;
-	for(int i = 0; i < 3; i++)
-	{
-		double a = (box.low[i] - ray.origin[i]) * inverse[i];
-		double b = (box.high[i] - ray.origin[i]) * inverse[i];
-		if(a > b)
-			std::swap(a, b);
-		enter = (a > enter) ? a : enter;
-		leave = (b < leave) ? b : leave;
-	}
-	return enter <= leave;
-}
-
-void ShadowCasters::Walk::Push(unsigned int node)
-{
-	Entry entry;
-	entry.node = node;
-	if(Cross(casters.nodes[node].box, entry.enter, entry.leave))
-		stack.push_back(entry);
-}
-
-ObjectPtr ShadowCasters::Walk::Next(double end, double& enter, double& leave)
-{
-	while(true)
-	{
-		while(leafItem < leafEnd)
-		{
-			const unsigned int object = casters.order[leafItem++];
-			if(Cross(casters.boxes[object], enter, leave) && (enter < end))
-				return casters.objects[object];
-		}
-
-		if(stack.empty())
-			return NULL;
-
-		const Entry entry = stack.back();
-		stack.pop_back();
-		if(entry.enter >= end)
-			continue;
-
-		const Node& node = casters.nodes[entry.node];
-		if(node.count > 0)
-		{
-			leafItem = node.first;
-			leafEnd = node.first + node.count;
-			continue;
-		}
-
-		// the nearer child is looked at first, so it goes on top
-		const size_t before = stack.size();
-		Push(node.left);
-		Push(node.right);
-		if((stack.size() == before + 2) && (stack[before].enter < stack[before + 1].enter))
-			std::swap(stack[before], stack[before + 1]);
 	}
 }
 

@@ -5,7 +5,9 @@
 #ifndef POVRAY_BACKEND_SHADOWCASTERS_H
 #define POVRAY_BACKEND_SHADOWCASTERS_H
 
-#include "backend/shadow/shadowplugin.h"
+#include <boost/scoped_ptr.hpp>
+
+#include "backend/shadow/shadowtree.h"
 
 namespace pov
 {
@@ -32,47 +34,17 @@ class ShadowCasters
 		/// Objects whose inside holds the point.
 		void Containing(const Vector3d& point, TraceThreadData *thread, vector<ObjectPtr>& out) const;
 
-		/// Walks the mapped objects whose boxes a light ray crosses, those with the nearer boxes first.
-		class Walk
-		{
-			public:
-				Walk(const ShadowCasters& casters, const dsm_ray& ray);
-
-				/// The next object whose box begins in front of `end`, and where the ray enters and leaves that box.
-				ObjectPtr Next(double end, double& enter, double& leave);
-			private:
-				struct Entry
-				{
-					unsigned int node;
-					double enter, leave;
-				};
-
-				bool Cross(const dsm_box& box, double& enter, double& leave) const;
-				void Push(unsigned int node);
-
-				const ShadowCasters& casters;
-				const dsm_ray& ray;
-				double inverse[3];
-				vector<Entry> stack;
-				unsigned int leafItem, leafEnd; ///< objects of the current leaf that are still to be seen
-		};
+		/// The boxes as a tree, and the object that a box of the tree belongs to.
+		const ShadowTree& Tree() const { return *tree; }
+		ObjectPtr Object(unsigned int box) const { return objects[box]; }
 	private:
-		struct Node
-		{
-			dsm_box box;
-			unsigned int first, count; ///< a leaf's objects, in `order`; count 0: an inner node
-			unsigned int left, right;
-		};
-
 		vector<ObjectPtr> objects;    ///< parallel to boxes
 		vector<dsm_box> boxes;
 		vector<ObjectPtr> unmapped;
-		vector<Node> nodes;
-		vector<unsigned int> order;
+		boost::scoped_ptr<ShadowTree> tree;
 		bool hasVolumes, hasUnmappedVolumes;
 
 		void SplitOffOutsized();
-		unsigned int Build(unsigned int first, unsigned int count);
 };
 
 }

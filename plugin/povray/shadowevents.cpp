@@ -54,7 +54,8 @@ ShadowEvents::ShadowEvents(shared_ptr<SceneData> scene, TraceThreadData *thread,
 
 dsm_result ShadowEvents::TraceRays(const LightSource& light, const dsm_ray *rays, unsigned int count, double tolerance, dsm_sink *sink)
 {
-	FindContainers(light);
+	if(casters.HasVolumes())
+		FindContainers(light);
 
 	for(unsigned int i = 0; i < count; i++)
 	{
@@ -101,15 +102,18 @@ void ShadowEvents::EnterContainers(const LightSource& light, const dsm_ray& ray)
 /// All surfaces of the mapped casters up to the first opaque one, nearest first.
 void ShadowEvents::FindHits(const dsm_ray& ray)
 {
-	ShadowCasters::Walk walk(casters, ray);
+	ShadowTree::Walk walk(casters.Tree(), ray, stack);
 	double end = ray.far_depth;
 	double enter, leave;
+	unsigned int box;
 
 	hits.clear();
-	while(ObjectPtr object = walk.Next(end, enter, leave))
-		end = FindHitsOf(object, ray, enter, leave, end);
+	surfaces.clear();
+	while(walk.Next(end, box, enter, leave))
+		end = FindHitsOf(casters.Object(box), ray, enter, leave, end);
 
-	std::stable_sort(hits.begin(), hits.end());
+	if(hits.size() > 1)
+		std::stable_sort(hits.begin(), hits.end());
 }
 
 /// One object's surfaces. Many shapes report only their first hit outside CSG, so an object that is not opaque is asked
@@ -144,19 +148,17 @@ double ShadowEvents::FindHitsOf(ObjectPtr object, const dsm_ray& ray, double ent
 			if((isect.Depth < MIN_ISECT_DEPTH) || ((start == 0.0) && (isect.Depth < SMALL_TOLERANCE)) || !(depth < end))
 				continue;
 
-			Hit hit;
-			hit.depth = depth;
-			hit.opaque = Test_Flag(isect.Object, OPAQUE_FLAG) != 0;
-			hit.isect = isect;
-			hits.push_back(hit);
-
-			if(hit.opaque)
+			Hit hit = { depth, kOpaque };
+			if(Test_Flag(isect.Object, OPAQUE_FLAG))
 				end = depth;
-			else if(depth > last)
+			else
 			{
-				last = depth;
-				more = true;
+				hit.surface = surfaces.size();
+				surfaces.push_back(isect);
+				more = more || (depth > last);
+				last = max(last, depth);
 			}
+			hits.push_back(hit);
 		}
 
 		if(!more || Test_Flag(object, OPAQUE_FLAG))
@@ -179,19 +181,19 @@ void ShadowEvents::Toggle(Interior *interior)
 
 /// What the surface's textures let through, seen from the receiver: stock shades a caster along the ray that comes from
 /// the receiver, and normals, interior textures and several patterns depend on that.
-RGBColour ShadowEvents::ShadeHit(const LightSource& light, const dsm_ray& ray, Hit& hit)
+RGBColour ShadowEvents::ShadeSurface(const LightSource& light, const dsm_ray& ray, Intersection& isect)
 {
 	TraceTicket ticket(sceneData->parsedMaxTraceLevel, sceneData->parsedAdcBailout);
 	RGBColour colour(1.0);
 
 	for(int i = 0; i < 3; i++)
 	{
-		shade.Origin[i] = hit.isect.IPoint[i] + ray.direction[i];
+		shade.Origin[i] = isect.IPoint[i] + ray.direction[i];
 		shade.Direction[i] = -ray.direction[i];
 	}
 	shade.ClearInteriors(); // so neither fading nor media come in
-	hit.isect.Depth = 1.0;
-	ComputeShadowColour(light, hit.isect, shade, colour, ticket);
+	isect.Depth = 1.0;
+	ComputeShadowColour(light, isect, shade, colour, ticket);
 	return colour;
 }
 
@@ -209,12 +211,12 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray,
 
 	for(size_t i = 0; i < hits.size(); i++)
 	{
-		Hit& hit = hits[i];
+		const Hit& hit = hits[i];
 		double colour[3] = { 0.0, 0.0, 0.0 };
 
-		if(!hit.opaque)
+		if(hit.surface != kOpaque)
 		{
-			const RGBColour c(ShadeHit(light, ray, hit));
+			const RGBColour c(ShadeSurface(light, ray, surfaces[hit.surface]));
 			for(int k = 0; k < 3; k++)
 				colour[k] = c[k];
 		}
@@ -224,13 +226,13 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray,
 			return result;
 
 		visible *= max(colour[0], max(colour[1], colour[2]));
-		if(hit.opaque || (visible <= 0.0))
+		if(visible <= 0.0)
 			break;
 		if(!casters.HasVolumes())
 			continue;
 
 		const double next = (i + 1 < hits.size()) ? hits[i + 1].depth : ray.far_depth;
-		Interior *interior = hit.isect.Object->interior;
+		Interior *interior = surfaces[hit.surface].Object->interior;
 
 		Toggle(interior);
 		if((interior->Fade_Power > 0.0) && (fabs(interior->Fade_Distance) > EPSILON) && (std::find(inside.begin(), inside.end(), interior) != inside.end()))

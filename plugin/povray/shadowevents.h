@@ -20,14 +20,14 @@ class ShadowEvents : public Trace
 		/// @return     what the library's sink said first that was not DSM_OK
 		dsm_result TraceRays(const LightSource& light, const dsm_ray *rays, unsigned int count, double tolerance, dsm_sink *sink);
 	private:
-		/// A surface on the ray; one that is not opaque comes with what its texture needs.
+		/// A surface on the ray.
 		struct Hit
 		{
 			double depth;
-			bool opaque;
-			Intersection isect;
+			int surface; ///< in `surfaces`; kOpaque: nothing more is needed of it
 			bool operator<(const Hit& other) const { return depth < other.depth; }
 		};
+		enum { kOpaque = -1 };
 
 		class SpanSink : public ShadowMedia::Sink
 		{
@@ -47,10 +47,12 @@ class ShadowEvents : public Trace
 		const bool volumes;
 
 		const LightSource *containersOf; ///< the light that `containers` belongs to
-		vector<ObjectPtr> containers;    ///< hold the light itself, or, for a parallel one, may cross its plane
+		vector<ObjectPtr> containers;    ///< hold the light itself, or the point of its plane where the ray begins
 
 		// scratch, kept between rays; a Ray is too big for the stack of every caller
 		vector<Hit> hits;
+		vector<Intersection> surfaces;
+		ShadowTree::Stack stack;
 		Ray probe, shade;
 		vector<Interior *> inside;
 		vector<const Media *> media;
@@ -60,7 +62,7 @@ class ShadowEvents : public Trace
 		void FindHits(const dsm_ray& ray);
 		double FindHitsOf(ObjectPtr object, const dsm_ray& ray, double enter, double leave, double end);
 		void Toggle(Interior *interior);
-		RGBColour ShadeHit(const LightSource& light, const dsm_ray& ray, Hit& hit);
+		RGBColour ShadeSurface(const LightSource& light, const dsm_ray& ray, Intersection& isect);
 		dsm_result ReportRay(const LightSource& light, const dsm_ray& ray, unsigned int index, double tolerance, dsm_sink *sink);
 		dsm_result ReportFade(const Interior& interior, double front, double back, double tolerance, unsigned int index, dsm_sink *sink);
 		double ReportMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, SpanSink& sink);

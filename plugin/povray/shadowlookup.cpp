@@ -88,8 +88,11 @@ static void DescribeReceiver(const ShadowReceiver& receiver, const ShadowMaps& m
 		out.point[i] = point[i];
 	out.plane_count = 0;
 
-	if((receiver.object == NULL) || Test_Flag(receiver.object, NO_SHADOW_FLAG) ||
-	   maps.Casters().IsUnmapped(receiver.object) || ((receiver.csg != NULL) && maps.Casters().IsUnmapped(receiver.csg)))
+	if(receiver.object == NULL)
+		return;
+	// Only the object of the scene's top level decides what a map holds. A part of a union does not tell whose it is.
+	const ObjectBase *top = (receiver.csg != NULL) ? receiver.csg : receiver.object;
+	if((Test_Flag(top, NO_SHADOW_FLAG) && !(top->Type & IS_CHILD_OBJECT)) || maps.Casters().IsUnmapped(top))
 		return;
 
 	const Vector3d normal((dot(receiver.normal, toLight) < 0.0) ? -receiver.normal : receiver.normal);

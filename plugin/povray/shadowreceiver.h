@@ -13,7 +13,7 @@ class ShadowContext;
 struct ShadowReceiver
 {
 	const ObjectBase *object; ///< NULL: no surface
-	const ObjectBase *csg;    ///< the compound it belongs to, or NULL
+	const ObjectBase *csg;    ///< the outermost CSG object it is part of, or NULL
 	Vector3d normal;          ///< unperturbed, either side
 	ShadowContext *context;   ///< of the thread that the Trace object works in; NULL before its first look-up
 

@@ -57,7 +57,7 @@ static void continuous(const char *resolution, const char *filter, double pixel)
       same = r;
       double light = light_of(&s, near_edge(&same, k % 4 == 0, off), 0);
       dimmed += light < 0.9;
-      if (last >= 0) assert_seeded(&r, fabs(light - last) < 0.012);
+      if (last >= 0) assert_seeded(&r, fabs(light - last) < 0.004);
       last = light;
     }
     r = same;

@@ -1,35 +1,35 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-#include "bake/pixel_tolerance.h"
+#include "bake/noise_profile.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double LV_TOLERANCE = 0.25;   /* over sqrt(N): half of the worst noise that N rays can have (LV 4) */
+static const double LV_TOLERANCE = 0.25;   /* over sqrt(N): half of the worst noise of N rays (LV 4) */
 
-static dsm_result make_room(tolerance_scratch *s, size_t count)
+static dsm_result make_room(noise_profile *s, size_t count)
 {
   if (s->room < count) {
-    tolerance_free(s);
+    noise_free(s);
     size_t room = count + count / 2;
-    s->variance = malloc(room * sizeof *s->variance);
+    s->allowed = malloc(room * sizeof *s->allowed);
     s->pairs = malloc(room * sizeof *s->pairs);
-    if (!s->variance || !s->pairs) {
-      tolerance_free(s);
+    if (!s->allowed || !s->pairs) {
+      noise_free(s);
       return DSM_NO_MEMORY;
     }
     s->room = room;
   }
-  memset(s->variance, 0, count * sizeof *s->variance);
+  memset(s->allowed, 0, count * sizeof *s->allowed);
   memset(s->pairs, 0, count * sizeof *s->pairs);
   return DSM_OK;
 }
 
-void tolerance_free(tolerance_scratch *s)
+void noise_free(noise_profile *s)
 {
-  free(s->variance);
+  free(s->allowed);
   free(s->pairs);
-  *s = (tolerance_scratch){0};
+  *s = (noise_profile){0};
 }
 
 /* The first vertex of the average at or behind z. */
@@ -93,21 +93,23 @@ static double square_gap(rgb a, rgb b)
   return rgb_max(rgb_mul(d, d));
 }
 
-/* Adds the squared difference of two rays where they differ, as the difference of running sums: each stretch between
- * two of their depths costs two searches, however many vertices of other rays it spans. */
-static void add_pair(reader a, reader b, const vertices *mean, tolerance_scratch *s)
+/* Adds the squared difference of two rays where they differ, as what a running sum changes by: each stretch
+ * between two of their depths costs two searches, however many vertices of other rays it spans. */
+static void add_pair(reader a, reader b, const vertices *mean, noise_profile *s)
 {
   for (;;) {
     double from = fmax(a.behind.z, b.behind.z), to = fmin(next_depth(&a), next_depth(&b));
     double behind = square_gap(a.behind.v, b.behind.v);
-    double square = to < INFINITY ? fmax(behind, square_gap(value_before(&a, to), value_before(&b, to))) : behind;
+    double square = behind;
+    if (to < INFINITY)
+      square = fmax(square, square_gap(value_before(&a, to), value_before(&b, to)));
     if (square > 0) {
       size_t i = last_not_behind(mean, from), j = to < INFINITY ? first_not_before(mean, to) : mean->count;
       if (i < j) {
-        s->variance[i] += square;
+        s->allowed[i] += square;
         s->pairs[i] += 1;
         if (j < mean->count) {
-          s->variance[j] -= square;
+          s->allowed[j] -= square;
           s->pairs[j] -= 1;
         }
       }
@@ -119,39 +121,32 @@ static void add_pair(reader a, reader b, const vertices *mean, tolerance_scratch
   }
 }
 
-/* Half the standard error; but not less than what a single one of the disagreeing rays adds, as that ray's own step
- * lies where chance put it. */
-static double allowed(double square_sum, double pairs, double rays, double least, double most)
-{
-  double half = pairs > 4 ? 0.5 : 1 / sqrt(fmax(1, pairs));
-  return fmax(least, fmin(most, half * sqrt(fmax(0, square_sum)) / rays));
-}
-
-dsm_result pixel_tolerance(const average_input *in, const uint32_t *order, const vertices *mean, double least,
-                           tolerance_scratch *s, double *tolerance)
+dsm_result noise_measure(noise_profile *s, const average_input *in, const uint32_t *order,
+                         const vertices *mean)
 {
   size_t n = mean->count;
-  *tolerance = least;
-  if (n == 0 || in->count < 2)
+  if (n == 0)
     return DSM_OK;
   dsm_result result = make_room(s, n);
   if (result != DSM_OK)
     return result;
-  for (uint32_t k = 0; k + 1 < in->count; k += 2)
+  for (uint32_t k = 0; k + 1 < in->count; k++)
     add_pair(reader_of(in, order[k]), reader_of(in, order[k + 1]), mean, s);
 
-  double rays = in->count, most = fmax(least, LV_TOLERANCE / sqrt(rays));
-  double variance = 0, pairs = 0, here = least, squares = 0, length = 0;
-  const vertex *v = mean->data;
+  double rays = in->count, most = LV_TOLERANCE / sqrt(rays), squares = 0, pairs = 0;
   for (size_t i = 0; i < n; i++) {
-    variance += s->variance[i];
+    squares += s->allowed[i];
     pairs += s->pairs[i];
-    here = allowed(variance, pairs, rays, least, most);
-    double stretch = i + 1 < n ? v[i + 1].z - v[i].z : 0;
-    squares += here * here * stretch;
-    length += stretch;
+    if (pairs < 0.5) {   /* whole numbers, and exact; the squares have rounded */
+      squares = 0;
+      s->allowed[i] = 0;
+      continue;
+    }
+    /* Every disagreeing ray has two neighbours. From four such rays on, half the error is more than one ray's
+     * step; the hundredth lets that step itself pass. */
+    double error = sqrt(fmax(0, squares) / (2 * rays * (rays - 1)));
+    double share = fmax(0.5, 1.01 / sqrt(fmax(1, pairs / 2)));
+    s->allowed[i] = fmin(most, share * error);
   }
-  double along = length > 0 ? sqrt(squares / length) : here;
-  *tolerance = rgb_max(v[n - 1].v) > 0 ? fmin(along, here) : along;
   return DSM_OK;
 }

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+
+#include <algorithm>
+#include <cmath>
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "backend/shadow/shadowtree.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+namespace
+{
+
+const unsigned int kLeafBoxes = 4;
+const int kBins = 16;
+
+double Centre(const dsm_box& box, int axis)
+{
+	return 0.5 * (box.low[axis] + box.high[axis]);
+}
+
+dsm_box Nothing()
+{
+	dsm_box box;
+	for(int i = 0; i < 3; i++)
+	{
+		box.low[i] = HUGE_VAL;
+		box.high[i] = -HUGE_VAL;
+	}
+	return box;
+}
+
+void Include(dsm_box& box, const dsm_box& other)
+{
+	for(int i = 0; i < 3; i++)
+	{
+		box.low[i] = min(box.low[i], other.low[i]);
+		box.high[i] = max(box.high[i], other.high[i]);
+	}
+}
+
+/// Half the surface: the chance that a ray hits the box.
+double Area(const dsm_box& box)
+{
+	const double x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
+	return (x < 0.0) ? 0.0 : x * y + y * z + z * x;
+}
+
+int BinOf(const dsm_box& box, const dsm_box& centres, int axis)
+{
+	const double width = centres.high[axis] - centres.low[axis];
+	return min(kBins - 1, int(kBins * (Centre(box, axis) - centres.low[axis]) / width));
+}
+
+struct BelowBin
+{
+	const vector<dsm_box>& boxes;
+	const dsm_box& centres;
+	const int axis, bin;
+	BelowBin(const vector<dsm_box>& b, const dsm_box& c, int a, int n) : boxes(b), centres(c), axis(a), bin(n) { }
+	bool operator()(unsigned int i) const { return BinOf(boxes[i], centres, axis) < bin; }
+};
+
+}
+
+ShadowTree::ShadowTree(const vector<dsm_box>& b) : boxes(b)
+{
+	for(unsigned int i = 0; i < boxes.size(); i++)
+		order.push_back(i);
+	if(boxes.empty())
+		return;
+	nodes.reserve(boxes.size());
+	nodes.resize(1);
+	Build(0, 0, boxes.size());
+}
+
+void ShadowTree::Build(unsigned int node, unsigned int first, unsigned int count)
+{
+	dsm_box all(Nothing()), centres(Nothing());
+
+	for(unsigned int i = first; i < first + count; i++)
+	{
+		const dsm_box& box = boxes[order[i]];
+		Include(all, box);
+		for(int axis = 0; axis < 3; axis++)
+		{
+			centres.low[axis] = min(centres.low[axis], Centre(box, axis));
+			centres.high[axis] = max(centres.high[axis], Centre(box, axis));
+		}
+	}
+
+	nodes[node].box = all;
+	nodes[node].first = first;
+	nodes[node].count = count;
+	if(count <= kLeafBoxes)
+		return;
+
+	const unsigned int half = Split(centres, first, count);
+	const unsigned int left = nodes.size();
+	nodes[node].first = left;
+	nodes[node].count = 0;
+	nodes.resize(left + 2);
+	Build(left, first, half);
+	Build(left + 1, first + half, count - half);
+}
+
+/// Reorders the boxes so that the two parts of the cheapest split lie one behind the other.
+/// @return     size of the first part, neither 0 nor all
+unsigned int ShadowTree::Split(const dsm_box& centres, unsigned int first, unsigned int count)
+{
+	double best = HUGE_VAL;
+	int bestAxis = 0, bestBin = 0;
+
+	for(int axis = 0; axis < 3; axis++)
+	{
+		unsigned int counts[kBins] = { 0 };
+		dsm_box bins[kBins];
+		double rightCost[kBins];
+
+		if(!(centres.high[axis] > centres.low[axis]))
+			continue;
+		std::fill(bins, bins + kBins, Nothing());
+		for(unsigned int i = first; i < first + count; i++)
+		{
+			const int bin = BinOf(boxes[order[i]], centres, axis);
+			counts[bin]++;
+			Include(bins[bin], boxes[order[i]]);
+		}
+
+		dsm_box part(Nothing());
+		unsigned int number = 0;
+		for(int bin = kBins - 1; bin > 0; bin--)
+		{
+			Include(part, bins[bin]);
+			number += counts[bin];
+			rightCost[bin] = Area(part) * number;
+		}
+		part = Nothing();
+		number = 0;
+		for(int bin = 1; bin < kBins; bin++)
+		{
+			Include(part, bins[bin - 1]);
+			number += counts[bin - 1];
+			const double cost = Area(part) * number + rightCost[bin];
+			if((number > 0) && (number < count) && (cost < best))
+			{
+				best = cost;
+				bestAxis = axis;
+				bestBin = bin;
+			}
+		}
+	}
+
+	if(bestBin == 0) // all centres coincide
+		return count / 2;
+	vector<unsigned int>::iterator begin(order.begin() + first);
+	return std::partition(begin, begin + count, BelowBin(boxes, centres, bestAxis, bestBin)) - begin;
+}
+
+ShadowTree::Walk::Walk(const ShadowTree& t, const dsm_ray& r, Stack& s) : tree(t), ray(r), stack(s), leafItem(0), leafEnd(0)
+{
+	double leave;
+	Entry root = { 0, 0.0 };
+
+	for(int i = 0; i < 3; i++)
+		inverse[i] = 1.0 / ray.direction[i];
+	stack.clear();
+	if(!tree.nodes.empty() && Cross(tree.nodes[0].box, root.enter, leave))
+		stack.push_back(root);
+}
+
+/// Slabs in double, however far away the light is. A direction along a face gives infinities of the right sign; a
+/// NaN (an origin on the face as well) leaves that slab out of account.
+inline bool ShadowTree::Walk::Cross(const dsm_box& box, double& enter, double& leave) const
+{
+	double from = ray.near_depth, to = ray.far_depth;
+	for(int i = 0; i < 3; i++)
+	{
+		const double a = (box.low[i] - ray.origin[i]) * inverse[i];
+		const double b = (box.high[i] - ray.origin[i]) * inverse[i];
+		const double low = (a < b) ? a : b, high = (a < b) ? b : a;
+		from = (low > from) ? low : from;
+		to = (high < to) ? high : to;
+	}
+	enter = from;
+	leave = to;
+	return from <= to;
+}
+
+bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double& leave)
+{
+	while(true)
+	{
+		while(leafItem < leafEnd)
+		{
+			box = tree.order[leafItem++];
+			if(Cross(tree.boxes[box], enter, leave) && (enter < end))
+				return true;
+		}
+
+		if(stack.empty())
+			return false;
+
+		const Entry entry = stack.back();
+		stack.pop_back();
+		if(entry.enter >= end)
+			continue;
+
+		const Node& node = tree.nodes[entry.node];
+		if(node.count > 0)
+		{
+			leafItem = node.first;
+			leafEnd = node.first + node.count;
+			continue;
+		}
+
+		// the nearer child is looked at first, so it goes on top
+		Entry left = { node.first, 0.0 }, right = { node.first + 1, 0.0 };
+		double unused;
+		const bool crossLeft = Cross(tree.nodes[left.node].box, left.enter, unused) && (left.enter < end);
+		const bool crossRight = Cross(tree.nodes[right.node].box, right.enter, unused) && (right.enter < end);
+		if(crossLeft && crossRight)
+		{
+			stack.push_back((left.enter < right.enter) ? right : left);
+			stack.push_back((left.enter < right.enter) ? left : right);
+		}
+		else if(crossLeft || crossRight)
+			stack.push_back(crossLeft ? left : right);
+	}
+}
+
+}

@@ -1,0 +1,65 @@
+#!/bin/bash
+# SPDX-License-Identifier: AGPL-3.0-or-later
+# POV-Ray's own distribution scenes, unedited.
+#
+#   tests/bench/distribution.sh identical [FOLDER...]   stock POV-Ray (make stock) and ours must give the same pixels
+#   tests/bench/distribution.sh deep [FOLDER...]        Shadow_Method=deep against raytraced: error and seconds, a line a scene
+#
+# Folders are those below scenes/ of the distribution; none: all. A scene that gives no picture in LIMIT seconds (default 60)
+# in either program fails, but for those that stock itself cannot render alone. Pictures stay in build/distribution/.
+# MOST=6 takes six scenes of each folder, evenly spread. SIZE="+W120 +H90" and OPTIONS="+A0.1 -J" go to every render.
+set -u
+top=$(cd "$(dirname "$0")/../.." && pwd)
+what=${1:?identical or deep}
+shift
+: "${LIMIT:=60}" "${MOST:=1000}" "${SIZE:=+W120 +H90}" "${OPTIONS:=}"
+: "${SHADOW_ERROR:=$top/tests/image/shadow_error}"
+: "${POVRAY:=$top/build/bin/povray}" "${STOCK:=$top/build/stock/bin/povray}"
+: "${SCENES:=$(dirname "$(dirname "$POVRAY")")/share/povray-3.7/scenes}"
+export LIMIT SIZE OPTIONS SHADOW_ERROR POVRAY STOCK SCENES what
+export out=$top/build/distribution/$what
+mkdir -p "$out"
+
+render() {  # $1: program, $2: picture, $3: scene, then options
+  local program=$1 picture=$2 scene=$3
+  shift 3
+  rm -f "$picture"
+  # shellcheck disable=SC2086
+  (cd "$(dirname "$scene")" && timeout "$LIMIT" "$program" -D -V +I"$(basename "$scene")" +O"$picture" $SIZE +WT1 \
+    +L"$SCENES/../include" +SF1 +EF1 $OPTIONS "$@" >"${picture%.*}.log" 2>&1 </dev/null) && [ -s "$picture" ]
+}
+
+seconds() { sed -n 's/.*Trace Time: .*(\([0-9.]*\) seconds).*/\1/p' "$1" | tail -n 1; }
+
+one() {
+  local scene=$1 name a b
+  name=${scene#"$SCENES"/}
+  name=${name%.pov}
+  a=$out/${name//\//-}-1 b=$out/${name//\//-}-2
+  case $what in
+    identical)
+      if ! render "$STOCK" "$a.ppm" "$scene" +FP16; then echo "none       $name"; return; fi
+      if ! render "$POVRAY" "$b.ppm" "$scene" +FP16; then echo "MISSING    $name"; return; fi
+      # pixels, not files: those carry a date
+      if idiff -q -fail 0 -failpercent 0 -hardfail 0 -warn 0 "$a.ppm" "$b.ppm" >/dev/null 2>&1
+      then echo "identical  $name"; else echo "DIFFERENT  $name"; fi ;;
+    deep)
+      if ! render "$POVRAY" "$a.exr" "$scene" +FE Shadow_Method=raytraced; then echo "none $name"; return; fi
+      if ! render "$POVRAY" "$b.exr" "$scene" +FE Shadow_Method=deep; then echo "MISSING $name"; return; fi
+      echo "rmse $("$SHADOW_ERROR" "$a.exr" "$b.exr" 2>&1 | cut -d' ' -f1,2) $name $(seconds "$a.log") $(seconds "$b.log")" ;;
+  esac
+}
+export -f one render seconds
+
+[ $# -gt 0 ] || set -- $(cd "$SCENES" && ls -d */)
+for folder; do
+  find "$SCENES/${folder%/}" -name '*.pov' | sort |
+    awk -v most="$MOST" '{ s[NR] = $0 } END { n = NR < most ? NR : most; for (i = 0; i < n; i++) printf "%s%c", s[1 + int(i * NR / n)], 0 }'
+done |
+  xargs -0 -n 1 -P "$(nproc)" bash -c 'one "$1"' _ | tee "$out.txt"
+echo
+case $what in
+  identical) cut -d' ' -f1 "$out.txt" | sort | uniq -c ;;
+  deep) echo "scenes: $(grep -c '^rmse' "$out.txt"), above 0.02: $(awk '/^rmse/ && $2 > 0.02' "$out.txt" | wc -l), no picture: $(grep -c '^MISSING' "$out.txt")" ;;
+esac
+! grep -qE '^(MISSING|DIFFERENT)' "$out.txt"

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "../oracle/oracle.h"
+
+static dsm_result create(world *w, dsm_light light, dsm_map **map) {
+  dsm_host host = host_of(w);
+  *map = (dsm_map *)1;
+  return dsm_api.map_create(&host, &light, NULL, map);
+}
+
+static void bad_lights_are_refused_with_a_sentence(void **state) {
+  (void)state;
+  dsm_box good = {{0, 0, 1}, {1, 1, 2}};
+  dsm_light lights[9];
+  for (int i = 0; i < 9; ++i) {
+    lights[i] = spot_at(0, 0, 0, 0, 0, 1, 20);
+    lights[i].casters = &good;
+    lights[i].caster_count = 1;
+  }
+  dsm_box turned = {{0, 0, 2}, {1, 1, 1}}, endless = {{0, 0, 0}, {1, INFINITY, 1}};
+  lights[0].kind = 3;
+  lights[1].origin[1] = NAN;
+  lights[2].direction[2] = 0;
+  lights[3].cos_angle = 1.5;
+  lights[4].kind = DSM_LIGHT_PARALLEL;
+  lights[4].radius = -1;
+  lights[5].casters = NULL;
+  lights[6].casters = &turned;
+  lights[7].casters = &endless;
+  lights[8].size = 8;
+  for (int i = 0; i < 9; ++i) {
+    world w = {0};
+    dsm_map *map;
+    assert_int_equal(create(&w, lights[i], &map), DSM_INVALID);
+    assert_null(map);
+    assert_int_equal(w.sentences, 1);
+    assert_true(w.last[strlen(w.last) - 1] == '.');
+  }
+  world w = {0};
+  dsm_host host = host_of(&w);
+  dsm_map *map;
+  host.trace = NULL;
+  assert_int_equal(dsm_api.map_create(&host, &lights[0], NULL, &map), DSM_INVALID);
+  host = host_of(&w);
+  host.size = 4;
+  assert_int_equal(dsm_api.map_create(&host, &lights[0], NULL, &map), DSM_INVALID);
+}
+
+static void nothing_to_destroy(void **state) {
+  (void)state;
+  dsm_api.map_destroy(NULL);
+  dsm_api.worker_destroy(NULL);
+  dsm_api.settings_destroy(NULL);
+  assert_true(dsm_api.abi == DSM_ABI && dsm_api.size == sizeof(dsm_api_table) && dsm_api.parameter_count == 5);
+}
+
+static void no_casters_all_lit(void **state) {
+  (void)state;
+  for (uint32_t kind = 0; kind < 3; ++kind) {
+    dsm_light light = spot_at(1, 2, 3, 0, 1, 0, 30);
+    light.kind = kind;
+    stage s;
+    stage_open(&s, NULL, 0, light, NULL);
+    double rgb[3] = {0};
+    dsm_receiver at = in_air(4, 5, 6);
+    assert_int_equal(dsm_api.lookup(s.worker, &at, rgb), DSM_OUTSIDE);
+    assert_true(rgb[0] == 1 && rgb[1] == 1 && rgb[2] == 1);
+    dsm_statistics got = {.size = sizeof got};
+    dsm_api.statistics(s.map, &got);
+    assert_true(got.faces == 0 && got.tiles == 0 && got.pixels == 0 && got.rays == 0);
+    stage_close(&s);
+  }
+}
+
+/* Degenerate cones: no light, hardly any, and nearly all of it. */
+static void odd_cones(void **state) {
+  (void)state;
+  static const double degrees[] = {0, 0.001, 59.999, 60.001, 90, 179, 180};
+  for (int i = 0; i < 7; ++i) {
+    shape ball = sphere_at(0, 0, 5, 1, 0);
+    stage s;
+    stage_open(&s, &ball, 1, spot_at(0, 0, 0, 0, 0, 1, degrees[i]), WORDS("resolution 64"));
+    double centre = light_of(&s, in_air(0, 0, 9), 0);
+    if (i > 0) assert_true(centre == 0);
+    assert_true(light_of(&s, in_air(0, 0, 3), 0) == 1 && light_of(&s, in_air(0, 0, -3), 0) == 1);
+    assert_true(light_of(&s, in_air(0, 0, 0), 0) == 1);
+    stage_close(&s);
+  }
+}
+
+static void statistics_add_up(void **state) {
+  (void)state;
+  shape all[] = {sphere_at(0, 0, 5, 1, 0), sheet_at(7, 1, 0.5, 0.6, 0.7)};
+  stage s;
+  stage_open(&s, all, 2, parallel_at(0, 0, 1, 0, 0, 1), WORDS("resolution 50", "samples 4"));
+  dsm_statistics got = {.size = sizeof got};
+  dsm_api.statistics(s.map, &got);
+  assert_true(got.faces == 1 && got.tiles == 16 && got.tiles_baked == 0 && got.pixels == 2500 && got.pixels_baked == 0);
+  assert_true(fabs(got.near_depth - 3) < 1e-8 && fabs(got.far_depth - 6) < 1e-8);
+  uint64_t empty = got.bytes;
+  for (double x = -1.01; x < 1.02; x += 0.02)
+    for (double y = -1.01; y < 1.02; y += 0.02) light_of(&s, in_air(x, y, 9), 0);
+  dsm_api.statistics(s.map, &got);
+  assert_true(got.tiles_baked == 16 && got.pixels_baked == 2500 && got.rays == 10000 && got.tiles_failed == 0);
+  assert_true(got.pixels_coloured > 400 && got.pixels_coloured < 900 && got.pixels_marked == 0);
+  assert_true(got.vertices > 4000 && got.vertices <= got.vertices_in && got.events > 10000);
+  assert_true(got.bytes > empty + 16 * got.pixels_coloured && got.bake_seconds >= got.trace_seconds);
+  /* a host that knows only the beginning gets only that */
+  dsm_statistics part = {.size = 24};
+  part.pixels = 12345;
+  dsm_api.statistics(s.map, &part);
+  assert_true(part.tiles == 16 && part.pixels == 12345 && part.size == 24);
+  stage_close(&s);
+}
+
+static void settings_and_light_are_copied(void **state) {
+  (void)state;
+  shape ball = sphere_at(0, 0, 5, 1, 0);
+  world w = {.shapes = &ball, .count = 1};
+  dsm_light light = parallel_at(0, 0, 0, 0, 0, 2);   /* direction is made unit length */
+  dsm_box box = ball.box;
+  light.casters = &box;
+  light.caster_count = 1;
+  dsm_host host = host_of(&w);
+  dsm_settings *settings = settings_of(WORDS("resolution 32"));
+  dsm_map *map;
+  assert_int_equal(dsm_api.map_create(&host, &light, settings, &map), DSM_OK);
+  dsm_api.settings_destroy(settings);
+  memset(&light, 0, sizeof light);
+  memset(&box, 0, sizeof box);
+  memset(&host, 0, sizeof host);
+  dsm_worker *worker;
+  double rgb[3];
+  dsm_receiver at = in_air(0, 0, 9);
+  assert_int_equal(dsm_api.worker_create(map, &w, &worker), DSM_OK);
+  assert_int_equal(dsm_api.lookup(worker, &at, rgb), DSM_OK);
+  assert_true(rgb[0] == 0);
+  dsm_api.worker_destroy(worker);
+  dsm_api.map_destroy(map);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(bad_lights_are_refused_with_a_sentence),
+    cmocka_unit_test(nothing_to_destroy),
+    cmocka_unit_test(no_casters_all_lit),
+    cmocka_unit_test(odd_cones),
+    cmocka_unit_test(statistics_add_up),
+    cmocka_unit_test(settings_and_light_are_copied),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/settings.h"
+
+static dsm_settings set;
+static char why[200];
+
+static dsm_result give(uint32_t word, const char *choice, uint32_t count, double a, double b) {
+  double numbers[3] = {a, b, 0};
+  return settings_set(&set, word, choice, numbers, count, why, sizeof why);
+}
+
+static void defaults_are_those_of_the_table(void **state) {
+  (void)state;
+  settings_defaults(&set);
+  assert_int_equal(set.resolution[0], 512);
+  assert_int_equal(set.resolution[1], 0);
+  assert_int_equal(set.samples, 16);
+  assert_true(set.tolerance == SETTING_AUTOMATIC && set.bias == SETTING_AUTOMATIC);
+  assert_true(set.filter == FILTER_BOX && set.filter_width == 1);
+  for (int i = 0; i < WORD_COUNT; ++i) {
+    const dsm_parameter *row = &settings_table[i];
+    assert_non_null(row->name);
+    assert_non_null(row->default_text);
+    assert_non_null(row->meaning);
+    assert_true(row->min_count <= row->max_count && row->low <= row->high);
+    assert_true((row->type == DSM_CHOICE) == (row->choices != NULL));
+  }
+}
+
+static void good_values_are_taken(void **state) {
+  (void)state;
+  settings_defaults(&set);
+  assert_int_equal(give(WORD_RESOLUTION, NULL, 1, 16384, 0), DSM_OK);
+  assert_true(set.resolution[0] == 16384 && set.resolution[1] == 0);
+  assert_int_equal(give(WORD_RESOLUTION, NULL, 2, 1, 7), DSM_OK);
+  assert_true(set.resolution[0] == 1 && set.resolution[1] == 7);
+  assert_int_equal(give(WORD_SAMPLES, NULL, 1, 4096, 0), DSM_OK);
+  assert_int_equal(set.samples, 4096);
+  assert_int_equal(give(WORD_TOLERANCE, NULL, 1, 0, 0), DSM_OK);
+  assert_true(set.tolerance == 0);
+  assert_int_equal(give(WORD_TOLERANCE, NULL, 1, nextafter(0.5, 0), 0), DSM_OK);
+  assert_int_equal(give(WORD_FILTER, "gaussian", 1, 16, 0), DSM_OK);
+  assert_true(set.filter == FILTER_GAUSSIAN && set.filter_width == 16);
+  assert_int_equal(give(WORD_FILTER, "triangle", 0, 0, 0), DSM_OK);
+  assert_true(set.filter == FILTER_TRIANGLE && set.filter_width == 2);
+  assert_int_equal(give(WORD_FILTER, "box", 1, 1e-9, 0), DSM_OK);
+  assert_int_equal(give(WORD_BIAS, NULL, 1, 1e6, 0), DSM_OK);
+  assert_true(set.bias == 1e6);
+}
+
+/* A refusal names the word, the value and the range, and changes nothing. */
+static void refused(uint32_t word, const char *choice, uint32_t count, double a, double b, const char *value,
+                    const char *range) {
+  dsm_settings before = set;
+  memset(why, 'x', sizeof why);
+  assert_int_equal(give(word, choice, count, a, b), DSM_INVALID);
+  assert_memory_equal(&before, &set, sizeof set);
+  if (word < WORD_COUNT) assert_non_null(strstr(why, settings_table[word].name));
+  if (!strstr(why, value) || !strstr(why, range)) fail_msg("no '%s' and '%s' in: %s", value, range, why);
+  assert_true(why[strlen(why) - 1] == '.');
+}
+
+static void bad_values_are_refused(void **state) {
+  (void)state;
+  settings_defaults(&set);
+  refused(WORD_RESOLUTION, NULL, 1, 0, 0, "0", "1 to 2 whole numbers from 1 to 16384");
+  refused(WORD_RESOLUTION, NULL, 2, 5, 16385, "16385", "16384");
+  refused(WORD_RESOLUTION, NULL, 1, 1.5, 0, "1.5", "whole");
+  refused(WORD_RESOLUTION, NULL, 3, 1, 1, "3 numbers", "1 to 2");
+  refused(WORD_RESOLUTION, "box", 1, 1, 0, "box", "1 to 2");
+  refused(WORD_SAMPLES, NULL, 1, 4097, 0, "4097", "from 1 to 4096");
+  refused(WORD_SAMPLES, NULL, 0, 0, 0, "0 numbers", "1 whole number");
+  refused(WORD_SAMPLES, NULL, 1, NAN, 0, "nan", "from 1");
+  refused(WORD_TOLERANCE, NULL, 1, 0.5, 0, "0.5", "from 0 to below 0.5");
+  refused(WORD_TOLERANCE, NULL, 1, -1, 0, "-1", "0.5");
+  refused(WORD_FILTER, "sinc", 0, 0, 0, "sinc", "box triangle gaussian");
+  refused(WORD_FILTER, "bo", 0, 0, 0, "bo", "box triangle gaussian");
+  refused(WORD_FILTER, "box triangle", 0, 0, 0, "box triangle", "gaussian");
+  refused(WORD_FILTER, "", 0, 0, 0, "", "box triangle gaussian");
+  refused(WORD_FILTER, NULL, 1, 1, 0, "", "box triangle gaussian");
+  refused(WORD_FILTER, "box", 1, 0, 0, "0", "above 0, at most 16");
+  refused(WORD_FILTER, "box", 1, 17, 0, "17", "16");
+  refused(WORD_BIAS, NULL, 1, -0.1, 0, "-0.1", "at least 0");
+  refused(WORD_BIAS, NULL, 1, INFINITY, 0, "inf", "at least 0");
+  refused(WORD_COUNT, NULL, 1, 1, 0, "5", "parameter");
+}
+
+static void sentence_fits_or_is_left_out(void **state) {
+  (void)state;
+  double bad = 0;
+  char small[8] = "1234567";
+  assert_int_equal(settings_set(&set, WORD_SAMPLES, NULL, &bad, 1, small, 4), DSM_INVALID);
+  assert_true(strlen(small) == 3 && small[4] == '5');
+  assert_int_equal(settings_set(&set, WORD_SAMPLES, NULL, &bad, 1, NULL, 0), DSM_INVALID);
+  assert_int_equal(settings_set(&set, WORD_SAMPLES, NULL, NULL, 1, NULL, 0), DSM_INVALID);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(defaults_are_those_of_the_table),
+    cmocka_unit_test(good_values_are_taken),
+    cmocka_unit_test(bad_values_are_refused),
+    cmocka_unit_test(sentence_fits_or_is_left_out),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
