@@ -3,13 +3,13 @@
 # Renders the hair ball without shadows, ray-traced and with deep shadows, and prints what each cost and how far it is
 # from ray tracing. `make demo` calls this from the build's top folder.
 #
-# Environment: POVRAY (build/bin/povray), SHADOW_ERROR (build/bin/shadow_error), DEMO_WIDTH (640), DEMO_HEIGHT (480),
+# Environment: POVRAY (build/bin/povray), SHADOW_ERROR (tests/image/shadow_error), DEMO_WIDTH (640), DEMO_HEIGHT (480),
 # DEMO_HAIRS (50000), DEMO_THREADS (all processors), DEMO_DIR (build/demo), DEMO_OPTIONS (more options for POV-Ray).
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
 povray=${POVRAY:-build/bin/povray}
-shadow_error=${SHADOW_ERROR:-build/bin/shadow_error}
+shadow_error=${SHADOW_ERROR:-tests/image/shadow_error}
 width=${DEMO_WIDTH:-640}
 height=${DEMO_HEIGHT:-480}
 hairs=${DEMO_HAIRS:-50000}

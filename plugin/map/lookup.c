@@ -18,13 +18,16 @@ typedef struct {
  * middle of it. The surface itself takes about a third there. */
 static const double CONTACT = 0.5;
 
+/* Less light than this is not worth a ray. */
+static const double UNSEEN = 1e-3;
+
 /* Reads a pixel in front of where the receiver's own surface can be. Every plane bounds the surface by itself, so the
  * one that asks for the least bias is enough.
  *
  *       light         The bias steps over what lies within it: also over an edge that touches the surface, and light
  *         |           would leak in along the contact. But the surface alone leaves most of the light in the
- *   1 ----+---.       middle of its range of depths (o). Where an occluder is in front there (x), the map cannot tell
- *         |    `.o    the two apart, and says so. */
+ *   1 ----+---.       middle of its range of depths (o). Where less is left there, an occluder is so near that the map
+ *         |    `.o    cannot tell the two apart, and says so. */
 static inline dsm_result read_pixel(view *v, const tile *t, const visibility *function, double du, double dv,
                                     uint32_t *hint, rgb *seen)
 {
@@ -37,11 +40,11 @@ static inline dsm_result read_pixel(view *v, const tile *t, const visibility *fu
   double tangent = receiver_bias(&v->planes[0], du, dv);
   double other = v->plane_count > 1 ? receiver_bias(&v->planes[1], du, dv) : tangent;
   *seen = visibility_at(function, z - (tangent < other ? tangent : other), hint);
-  if (!v->automatic || tangent > other)
+  if (!v->automatic || tangent > other || seen->c[0] + seen->c[1] + seen->c[2] <= 2 * UNSEEN)
     return DSM_OK;
   rgb middle = visibility_at(function, z - receiver_middle(&v->planes[0], du, dv), hint);
   for (int c = 0; c < 3; c++)
-    if (middle.c[c] < CONTACT * seen->c[c] - 1e-3)
+    if (middle.c[c] < CONTACT * seen->c[c] - UNSEEN)
       return DSM_TRACE;
   return DSM_OK;
 }

@@ -77,6 +77,19 @@ ShadowTree::ShadowTree(const vector<dsm_box>& b) : boxes(b)
 	nodes.reserve(boxes.size());
 	nodes.resize(1);
 	Build(0, 0, boxes.size());
+	for(unsigned int i = 0; i < order.size(); i++)
+		leaves.push_back(Round(boxes[order[i]]));
+}
+
+ShadowTree::Slabs ShadowTree::Round(const dsm_box& box)
+{
+	Slabs slabs;
+	for(int axis = 0; axis < 3; axis++)
+	{
+		slabs.side[0][axis] = nextafterf(float(box.low[axis]), -HUGE_VALF);
+		slabs.side[1][axis] = nextafterf(float(box.high[axis]), HUGE_VALF);
+	}
+	return slabs;
 }
 
 void ShadowTree::Build(unsigned int node, unsigned int first, unsigned int count)
@@ -94,7 +107,7 @@ void ShadowTree::Build(unsigned int node, unsigned int first, unsigned int count
 		}
 	}
 
-	nodes[node].box = all;
+	nodes[node].slabs = Round(all);
 	nodes[node].first = first;
 	nodes[node].count = count;
 	if(count <= kLeafBoxes)
@@ -168,22 +181,24 @@ ShadowTree::Walk::Walk(const ShadowTree& t, const dsm_ray& r, Stack& s) : tree(t
 	Entry root = { 0, 0.0 };
 
 	for(int i = 0; i < 3; i++)
+	{
 		inverse[i] = 1.0 / ray.direction[i];
+		nearSide[i] = (inverse[i] < 0.0) ? 1 : 0;
+	}
 	stack.clear();
-	if(!tree.nodes.empty() && Cross(tree.nodes[0].box, root.enter, leave))
+	if(!tree.nodes.empty() && Cross(tree.nodes[0].slabs, root.enter, leave))
 		stack.push_back(root);
 }
 
 /// Slabs in double, however far away the light is. A direction along a face gives infinities of the right sign; a
 /// NaN (an origin on the face as well) leaves that slab out of account.
-inline bool ShadowTree::Walk::Cross(const dsm_box& box, double& enter, double& leave) const
+inline bool ShadowTree::Walk::Cross(const Slabs& slabs, double& enter, double& leave) const
 {
 	double from = ray.near_depth, to = ray.far_depth;
 	for(int i = 0; i < 3; i++)
 	{
-		const double a = (box.low[i] - ray.origin[i]) * inverse[i];
-		const double b = (box.high[i] - ray.origin[i]) * inverse[i];
-		const double low = (a < b) ? a : b, high = (a < b) ? b : a;
+		const double low = (slabs.side[nearSide[i]][i] - ray.origin[i]) * inverse[i];
+		const double high = (slabs.side[1 - nearSide[i]][i] - ray.origin[i]) * inverse[i];
 		from = (low > from) ? low : from;
 		to = (high < to) ? high : to;
 	}
@@ -198,9 +213,12 @@ bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double
 	{
 		while(leafItem < leafEnd)
 		{
-			box = tree.order[leafItem++];
-			if(Cross(tree.boxes[box], enter, leave) && (enter < end))
+			const unsigned int item = leafItem++;
+			if(Cross(tree.leaves[item], enter, leave) && (enter < end))
+			{
+				box = tree.order[item];
 				return true;
+			}
 		}
 
 		if(stack.empty())
@@ -222,8 +240,8 @@ bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double
 		// the nearer child is looked at first, so it goes on top
 		Entry left = { node.first, 0.0 }, right = { node.first + 1, 0.0 };
 		double unused;
-		const bool crossLeft = Cross(tree.nodes[left.node].box, left.enter, unused) && (left.enter < end);
-		const bool crossRight = Cross(tree.nodes[right.node].box, right.enter, unused) && (right.enter < end);
+		const bool crossLeft = Cross(tree.nodes[left.node].slabs, left.enter, unused) && (left.enter < end);
+		const bool crossRight = Cross(tree.nodes[right.node].slabs, right.enter, unused) && (right.enter < end);
 		if(crossLeft && crossRight)
 		{
 			stack.push_back((left.enter < right.enter) ? right : left);

@@ -12,9 +12,11 @@ namespace pov
 {
 
 /// Split by the surface area heuristic over a few bins of the boxes' centres (Wald 2007). POV-Ray's own trees are not
-/// used: they are there for some bounding methods only, hold lights and infinite objects, and keep their boxes in floats.
+/// used: they are there for some bounding methods only, and hold lights and infinite objects.
 class ShadowTree
 {
+	private:
+		struct Slabs;
 	public:
 		explicit ShadowTree(const std::vector<dsm_box>& boxes);
 
@@ -35,25 +37,35 @@ class ShadowTree
 				/// @return     false when there is none left
 				bool Next(double end, unsigned int& box, double& enter, double& leave);
 			private:
-				bool Cross(const dsm_box& box, double& enter, double& leave) const;
+				bool Cross(const Slabs& slabs, double& enter, double& leave) const;
 
 				const ShadowTree& tree;
 				const dsm_ray& ray;
 				Stack& stack;
 				double inverse[3];
+				int nearSide[3]; ///< which side of a slab the ray meets first
 				unsigned int leafItem, leafEnd; ///< boxes of the current leaf that are still to be seen
 		};
 	private:
+		/// A box in floats, rounded outwards: a walk is bound by the memory that it touches. side[0] is low, side[1] high.
+		struct Slabs
+		{
+			float side[2][3];
+		};
+
 		struct Node
 		{
-			dsm_box box;
-			unsigned int first; ///< a leaf's boxes, in `order`; of an inner node the left child, the right one follows
+			Slabs slabs;
+			unsigned int first; ///< a leaf's boxes, in `leaves`; of an inner node the left child, the right one follows
 			unsigned int count; ///< 0: an inner node
 		};
 
 		const std::vector<dsm_box>& boxes;
 		std::vector<Node> nodes;
-		std::vector<unsigned int> order;
+		std::vector<unsigned int> order; ///< boxes in the order of the leaves
+		std::vector<Slabs> leaves;       ///< in that order
+
+		static Slabs Round(const dsm_box& box);
 
 		void Build(unsigned int node, unsigned int first, unsigned int count);
 		unsigned int Split(const dsm_box& centres, unsigned int first, unsigned int count);
