@@ -5,7 +5,7 @@
 //
 // Declare=Hairs=50000   number of hairs
 // Declare=Curl=1        0: straight hairs of one cylinder each
-// Declare=Resolution=512 Declare=Samples=16   of the three maps
+// Declare=Resolution=512 Declare=Samples=4   of the three maps
 // Declare=White=0       1: everything matte white, so that the picture shows the shadows alone
 #version 3.7;
 global_settings { assumed_gamma 1 }
@@ -14,7 +14,7 @@ global_settings { assumed_gamma 1 }
 #ifndef (Curl)  #declare Curl = 1; #end
 #ifndef (White) #declare White = 0; #end
 #ifndef (Resolution) #declare Resolution = 512; #end
-#ifndef (Samples)    #declare Samples = 16; #end
+#ifndef (Samples)    #declare Samples = 4; #end
 
 #declare HairRadius = 0.001;
 #declare Segments = 12;       // cylinders a curled hair
