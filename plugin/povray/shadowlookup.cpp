@@ -12,6 +12,7 @@
 #include "backend/scene/scene.h"
 #include "backend/scene/threaddata.h"
 #include "backend/shape/cones.h"
+#include "backend/shadow/shadowcontext.h"
 #include "backend/shadow/shadowmaps.h"
 
 // this must be the last file included

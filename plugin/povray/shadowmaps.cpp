@@ -13,7 +13,7 @@
 #include "backend/scene/scene.h"
 #include "backend/scene/threaddata.h"
 #include "backend/scene/view.h"
-#include "backend/support/task.h"
+#include "backend/shadow/shadowcontext.h"
 #include "backend/shadow/shadowmaps.h"
 
 // this must be the last file included
@@ -69,85 +69,6 @@ void Describe(const LightSource& light, const vector<dsm_box>& casters, dsm_ligh
 }
 
 }
-
-// ----- ShadowContext
-
-ShadowContext::ShadowContext(ShadowMaps& m, ViewData *viewData, ViewThreadData *threadData) :
-	lookUps(0), rayTraced(0),
-	maps(m),
-	events(viewData->GetSceneData(), threadData, viewData->GetQualityFeatureFlags(), m.Casters()),
-	workers(m.maps.size())
-{
-	for(size_t i = 0; i < workers.size(); i++)
-	{
-		workers[i].context = this;
-		workers[i].map = i;
-		workers[i].worker = NULL;
-		if(ShadowPlugin::Api().worker_create(maps[i].map.get(), &workers[i], &workers[i].worker) != DSM_OK)
-			throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
-	}
-}
-
-ShadowContext::~ShadowContext()
-{
-	for(vector<Worker>::iterator i(workers.begin()); i != workers.end(); i++)
-		ShadowPlugin::Api().worker_destroy(i->worker);
-}
-
-dsm_result ShadowContext::LookUp(size_t map, const dsm_receiver& receiver, double rgb[3])
-{
-	const dsm_result result = ShadowPlugin::Api().lookup(workers[map].worker, &receiver, rgb);
-
-	lookUps++;
-	if((result == DSM_OK) || (result == DSM_OUTSIDE))
-		return result;
-	rayTraced++;
-
-	if(failure)
-	{
-		std::exception_ptr thrown;
-		std::swap(thrown, failure);
-		std::rethrow_exception(thrown);
-	}
-	if(result == DSM_NO_MEMORY)
-		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
-	return DSM_TRACE;
-}
-
-dsm_result ShadowContext::Trace(void *data, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink)
-{
-	Worker& worker = *static_cast<Worker *>(data);
-	ShadowContext& self = *worker.context;
-
-	try
-	{
-		return self.events.TraceRays(*self.maps[worker.map].light, rays, count, tolerance, sink);
-	}
-	catch(...)
-	{
-		// a stopped task, or an error of POV-Ray's: LookUp passes it on
-		self.failure = std::current_exception();
-		return DSM_CANCELLED;
-	}
-}
-
-int32_t ShadowContext::Pause(void *data)
-{
-	ShadowContext& self = *static_cast<Worker *>(data)->context;
-
-	try
-	{
-		Task::CurrentTaskCooperate();
-		return 0;
-	}
-	catch(...)
-	{
-		self.failure = std::current_exception();
-		return 1;
-	}
-}
-
-// ----- ShadowMaps
 
 shared_ptr<ShadowMaps> ShadowMaps::New(ViewData *viewData, int method, int threadCount, vector<ViewThreadData *>& threads)
 {
@@ -277,7 +198,7 @@ ShadowContext *ShadowMaps::Current()
 
 void ShadowMaps::Release(ShadowContext *context)
 {
-	ShadowMaps& maps = context->maps;
+	ShadowMaps& maps = context->Maps();
 
 	boost::lock_guard<boost::mutex> lock(maps.idleMutex);
 	maps.idle.push_back(context);

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The shadow maps of one render: which lights have one, and what each thread needs to bake and ask them.
+// The shadow maps of one render: which lights have one, and who may ask them.
 
 #ifndef POVRAY_BACKEND_SHADOWMAPS_H
 #define POVRAY_BACKEND_SHADOWMAPS_H
 
-#include <exception>
-
 #include <boost/thread.hpp>
 
 #include "backend/shadow/shadowcasters.h"
-#include "backend/shadow/shadowevents.h"
 #include "backend/shadow/shadowsettings.h"
 
 namespace pov
 {
 
-class ShadowMaps;
+class ShadowContext;
 class ViewData;
 class ViewThreadData;
 
@@ -26,38 +23,6 @@ struct ShadowMap
 	shared_ptr<dsm_map> map;
 	bool photons;     ///< receivers of photons from this light are ray-traced
 	bool atmosphere;  ///< fog and atmospheric media dim this light, and are multiplied in at the look-up
-};
-
-/// What one thread bakes and looks up with: its own tracing objects, so that baking does not disturb the render that
-/// it interrupts, and its own workers.
-class ShadowContext
-{
-	public:
-		ShadowContext(ShadowMaps& maps, ViewData *viewData, ViewThreadData *threadData);
-		~ShadowContext();
-
-		/// Asks a map. Throws what baking has thrown, after the library has unwound.
-		/// @return     DSM_OK or DSM_OUTSIDE with rgb set, or DSM_TRACE
-		dsm_result LookUp(size_t map, const dsm_receiver& receiver, double rgb[3]);
-
-		POV_ULONG lookUps, rayTraced;
-	private:
-		/// Hands a map's requests to this thread.
-		struct Worker
-		{
-			ShadowContext *context;
-			size_t map;
-			dsm_worker *worker;
-		};
-
-		ShadowMaps& maps;
-		ShadowEvents events;
-		vector<Worker> workers;
-		std::exception_ptr failure; ///< no exception may cross the library, so it waits here
-
-		friend class ShadowMaps;
-		static dsm_result Trace(void *worker, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink);
-		static int32_t Pause(void *worker);
 };
 
 class ShadowMaps
@@ -80,6 +45,7 @@ class ShadowMaps
 			return light.index < places.size() ? places[light.index] : kNone;
 		}
 		const ShadowMap& operator[](size_t map) const { return maps[map]; }
+		size_t Count() const { return maps.size(); }
 
 		const ShadowCasters& Casters() const { return casters; }
 
@@ -91,8 +57,6 @@ class ShadowMaps
 
 		static const size_t kNone = static_cast<size_t>(-1);
 	private:
-		friend class ShadowContext;
-
 		ViewData *viewData;
 		ShadowCasters casters;
 		bool unshadowed;

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "backend/scene/objects.h"
+#include "backend/scene/scene.h"
+#include "backend/scene/threaddata.h"
+#include "backend/scene/view.h"
+#include "backend/support/task.h"
+#include "backend/shadow/shadowcontext.h"
+#include "backend/shadow/shadowmaps.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+using namespace pov_base;
+
+ShadowContext::ShadowContext(ShadowMaps& m, ViewData *viewData, ViewThreadData *threadData) :
+	lookUps(0), rayTraced(0),
+	maps(m),
+	events(viewData->GetSceneData(), threadData, viewData->GetQualityFeatureFlags(), m.Casters()),
+	workers(m.Count())
+{
+	for(size_t i = 0; i < workers.size(); i++)
+	{
+		workers[i].context = this;
+		workers[i].map = i;
+		workers[i].worker = NULL;
+		if(ShadowPlugin::Api().worker_create(maps[i].map.get(), &workers[i], &workers[i].worker) != DSM_OK)
+			throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+	}
+}
+
+ShadowContext::~ShadowContext()
+{
+	for(vector<Worker>::iterator i(workers.begin()); i != workers.end(); i++)
+		ShadowPlugin::Api().worker_destroy(i->worker);
+}
+
+dsm_result ShadowContext::LookUp(size_t map, const dsm_receiver& receiver, double rgb[3])
+{
+	const dsm_result result = ShadowPlugin::Api().lookup(workers[map].worker, &receiver, rgb);
+
+	lookUps++;
+	if((result == DSM_OK) || (result == DSM_OUTSIDE))
+		return result;
+	rayTraced++;
+
+	if(failure)
+	{
+		std::exception_ptr thrown;
+		std::swap(thrown, failure);
+		std::rethrow_exception(thrown);
+	}
+	if(result == DSM_NO_MEMORY)
+		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+	return DSM_TRACE;
+}
+
+dsm_result ShadowContext::Trace(void *data, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink)
+{
+	Worker& worker = *static_cast<Worker *>(data);
+	ShadowContext& self = *worker.context;
+
+	try
+	{
+		return self.events.TraceRays(*self.maps[worker.map].light, rays, count, tolerance, sink);
+	}
+	catch(...)
+	{
+		// a stopped task, or an error of POV-Ray's: LookUp passes it on
+		self.failure = std::current_exception();
+		return DSM_CANCELLED;
+	}
+}
+
+int32_t ShadowContext::Pause(void *data)
+{
+	ShadowContext& self = *static_cast<Worker *>(data)->context;
+
+	try
+	{
+		Task::CurrentTaskCooperate();
+		return 0;
+	}
+	catch(...)
+	{
+		self.failure = std::current_exception();
+		return 1;
+	}
+}
+
+}
