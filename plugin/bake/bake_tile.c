@@ -12,9 +12,8 @@
 
 enum { BATCH_RAYS = 4096 };   /* enough for a host to sort its objects by; a quarter of a megabyte of rays */
 
-/* Limits of the automatic tolerance (DESIGN.md 1): half of an 8-bit step, and over sqrt(N) half of the worst
- * noise that N rays can have (LV 4). */
-static const double LEAST_TOLERANCE = 0.002, LV_TOLERANCE = 0.25;
+/* The automatic tolerance is not below this: half of an 8-bit step. */
+static const double LEAST_TOLERANCE = 0.002;
 
 static double seconds(void)
 {
@@ -39,7 +38,7 @@ static noise_limits limits_of(const bake_job *job, uint32_t face_index)
 {
   const face *f = &job->projection->faces[face_index];
   double size = 2 * job->settings->filter_width * fmax(f->pixel_u, f->pixel_v);
-  double most = LV_TOLERANCE / sqrt(job->settings->samples);
+  double most = noise_ceiling(job->settings->samples);
   int perspective = job->projection->perspective;
   return (noise_limits){LEAST_TOLERANCE, fmax(most, LEAST_TOLERANCE), perspective ? size : 0,
                         perspective ? 0 : size};

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double LV_TOLERANCE = 0.25;   /* over sqrt(N): half of the worst noise of N rays (LV 4) */
-
 static dsm_result make_room(noise_profile *s, size_t count)
 {
   if (s->room < count) {
@@ -133,7 +131,7 @@ dsm_result noise_measure(noise_profile *s, const average_input *in, const uint32
   for (uint32_t k = 0; k + 1 < in->count; k++)
     add_pair(reader_of(in, order[k]), reader_of(in, order[k + 1]), mean, s);
 
-  double rays = in->count, most = LV_TOLERANCE / sqrt(rays), squares = 0, pairs = 0;
+  double rays = in->count, most = noise_ceiling(rays), squares = 0, pairs = 0;
   for (size_t i = 0; i < n; i++) {
     squares += s->allowed[i];
     pairs += s->pairs[i];

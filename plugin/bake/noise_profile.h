@@ -11,7 +11,12 @@
 #ifndef DSM_BAKE_NOISE_PROFILE_H
 #define DSM_BAKE_NOISE_PROFILE_H
 
+#include <math.h>
+
 #include "core/average.h"
+
+/* LV 4: half of the worst noise that this many rays can have. */
+static inline double noise_ceiling(double rays) { return 0.25 / sqrt(rays); }
 
 /* Zero-initialise; a caller keeps it between pixels. */
 typedef struct {
@@ -22,7 +27,7 @@ typedef struct {
 
 /* Measures `in` (equal weights), whose average is `mean`, into profile->allowed, one number a vertex: half
  * the standard error, but at least what one of the disagreeing rays adds, as that ray's own step lies where
- * chance put it. At most LV's 0.25/sqrt(N). `order` is that of pixel_sample_path. 0 where the rays agree,
+ * chance put it. At most noise_ceiling. `order` is that of pixel_sample_path. 0 where the rays agree,
  * or for a single ray. */
 dsm_result noise_measure(noise_profile *profile, const average_input *in, const uint32_t *order,
                          const vertices *mean);

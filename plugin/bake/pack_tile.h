@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* A tile's compressed pixels, in double, packed into the floats that look-ups read (DESIGN.md 2, Depth). */
+/* A tile's compressed pixels, in double, packed into the floats that look-ups read. */
 #ifndef DSM_BAKE_PACK_TILE_H
 #define DSM_BAKE_PACK_TILE_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 /*
- * The automatic tolerance (DESIGN.md 1): compression by what is noise and nothing else.
+ * The automatic tolerance: compression by what is noise and nothing else.
  *
  *   1 ---------.            There is no point in preserving noise (LV 4), and none in losing what is no
  *      calm    |_  noisy    noise. The rays of a pixel meet a slanted sheet of glass at as many depths as
@@ -16,7 +16,7 @@
 
 typedef struct {
   double least;           /* the tolerance where there is no noise */
-  double most;            /* LV's 0.25/sqrt(N) */
+  double most;            /* noise_ceiling */
   /* A stretch no longer than thin * depth + thin_at_least is one slanted surface as a pixel sees it.
    * Nothing else lies in it, and the surface itself is read in front of it: `most` is allowed. */
   double thin, thin_at_least;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* Choosing a light's faces and fitting each to the casters that it sees (DESIGN.md 1). */
+/* Choosing a light's faces and fitting each to the casters that it sees. */
 #ifndef DSM_CORE_FACE_FIT_H
 #define DSM_CORE_FACE_FIT_H
 

@@ -18,6 +18,16 @@ static double quotient(double a, double b)
   return q > STEEPEST ? STEEPEST : q < -STEEPEST ? -STEEPEST : q == q ? q : 0;
 }
 
+/* A plane through the light has no slope that could be added up: it is in front of everything, everywhere. */
+static receiver_plane if_edge_on(receiver_plane plane)
+{
+  if (fabs(plane.slope_u) >= STEEPEST || fabs(plane.slope_v) >= STEEPEST) {
+    plane.slope_u = plane.slope_v = 0;
+    plane.reach = plane.middle = STEEPEST;
+  }
+  return plane;
+}
+
 receiver_plane receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound, double half,
                                    double bias)
 {
@@ -36,7 +46,7 @@ receiver_plane receiver_plane_seen(const projection *p, const projected *at, con
     plane.slope_v = quotient(nv * f->pixel_v, nz);
     plane.reach = half * (fabs(plane.slope_u) + fabs(plane.slope_v));
     plane.middle = 0.25 * plane.reach;
-    return plane;
+    return if_edge_on(plane);
   }
   /* Along the unit direction w through tangents (u, v) the plane lies at depth d / (n·w), where d = n·(point - light).
    * g = n·w = m / len, m = nu u + nv v + nz, len = |(u, v, 1)|. Relative to its value at the point it grows by the
@@ -52,5 +62,5 @@ receiver_plane receiver_plane_seen(const projection *p, const projected *at, con
   plane.reach = slope + curve;
   plane.middle = 0.25 * slope + curve;
   plane.depth = at->depth;
-  return plane;
+  return if_edge_on(plane);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 /*
  * The bias of a look-up: how far in front of the receiver a pixel is to be read so that the receiver's own
- * surface, as the pixel's filter has seen it, is not in the way (DESIGN.md 5).
+ * surface, as the pixel's filter has seen it, is not in the way.
  *
  * A pixel's rays meet the receiver's plane at many depths. Read at the point's own depth, the pixel would
  * count those in front of it as shadow (acne); read in front of the least of them, it counts none. That depth

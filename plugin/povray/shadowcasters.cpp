@@ -55,15 +55,6 @@ double HalfDiagonal(const dsm_box& box)
 	return 0.5 * sqrt(sum);
 }
 
-void Include(dsm_box& box, const dsm_box& other)
-{
-	for(int i = 0; i < 3; i++)
-	{
-		box.low[i] = min(box.low[i], other.low[i]);
-		box.high[i] = max(box.high[i], other.high[i]);
-	}
-}
-
 bool Dims(const Interior *interior)
 {
 	if(interior == NULL)

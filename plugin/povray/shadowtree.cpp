@@ -35,15 +35,6 @@ dsm_box Nothing()
 	return box;
 }
 
-void Include(dsm_box& box, const dsm_box& other)
-{
-	for(int i = 0; i < 3; i++)
-	{
-		box.low[i] = min(box.low[i], other.low[i]);
-		box.high[i] = max(box.high[i], other.high[i]);
-	}
-}
-
 /// Half the surface: the chance that a ray hits the box.
 double Area(const dsm_box& box)
 {
@@ -66,6 +57,15 @@ struct BelowBin
 	bool operator()(unsigned int i) const { return BinOf(boxes[i], centres, axis) < bin; }
 };
 
+}
+
+void Include(dsm_box& box, const dsm_box& other)
+{
+	for(int i = 0; i < 3; i++)
+	{
+		box.low[i] = min(box.low[i], other.low[i]);
+		box.high[i] = max(box.high[i], other.high[i]);
+	}
 }
 
 ShadowTree::ShadowTree(const vector<dsm_box>& b) : boxes(b)

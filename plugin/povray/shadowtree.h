@@ -11,6 +11,9 @@
 namespace pov
 {
 
+/// Enlarges `box` so that it holds `other`.
+void Include(dsm_box& box, const dsm_box& other);
+
 /// Split by the surface area heuristic over a few bins of the boxes' centres (Wald 2007). POV-Ray's own trees are not
 /// used: they are there for some bounding methods only, and hold lights and infinite objects.
 class ShadowTree
