@@ -8,8 +8,6 @@
 #include "backend/interior/media.h"
 #include "backend/math/vector.h"
 #include "backend/scene/objects.h"
-#include "backend/scene/scene.h"
-#include "backend/shape/csg.h"
 #include "backend/shadow/shadowcasters.h"
 
 // this must be the last file included
@@ -91,9 +89,9 @@ struct LargerFirst
 
 }
 
-ShadowCasters::ShadowCasters(const SceneData& scene) : hasVolumes(false), hasUnmappedVolumes(false)
+ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : hasVolumes(false), hasUnmappedVolumes(false)
 {
-	for(vector<ObjectPtr>::const_iterator i(scene.objects.begin()); i != scene.objects.end(); i++)
+	for(vector<ObjectPtr>::const_iterator i(scene.begin()); i != scene.end(); i++)
 	{
 		dsm_box box;
 

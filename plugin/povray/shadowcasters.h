@@ -12,12 +12,10 @@
 namespace pov
 {
 
-class SceneData;
-
 class ShadowCasters
 {
 	public:
-		explicit ShadowCasters(const SceneData& scene);
+		explicit ShadowCasters(const vector<ObjectPtr>& scene);
 
 		/// One box for each object that maps hold.
 		const vector<dsm_box>& Boxes() const { return boxes; }

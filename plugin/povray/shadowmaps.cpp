@@ -43,6 +43,9 @@ bool IsRefractingTarget(const ObjectBase *object, const LightSource& light)
 	return false;
 }
 
+/// Without shadows nobody asks for casters, and the base line of every timing must not pay for them.
+const vector<ObjectPtr> kNoObjects;
+
 /// Whether fog dims light by one factor a length, so that it can be multiplied in at the look-up.
 bool FogMultiplies(const FOG *fog)
 {
@@ -81,7 +84,7 @@ shared_ptr<ShadowMaps> ShadowMaps::New(ViewData *viewData, int method, int threa
 
 ShadowMaps::ShadowMaps(ViewData *vd, int method, int threadCount, vector<ViewThreadData *>& threads) :
 	viewData(vd),
-	casters(*vd->GetSceneData()),
+	casters((method == kPOVList_ShadowMethod_None) ? kNoObjects : vd->GetSceneData()->objects),
 	unshadowed(method == kPOVList_ShadowMethod_None),
 	rayTracedLights(0),
 	current(&ShadowMaps::Release)

@@ -3,7 +3,7 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
-#include <mutex>
+#include <sstream>
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
@@ -35,7 +35,7 @@ string LibraryPath()
 	return folder.substr(0, folder.rfind('/')) + kPlaceFromProgram;
 }
 
-const dsm_api_table *Load(string& why)
+const dsm_api_table& Load()
 {
 	const string path(LibraryPath());
 	void *library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -43,46 +43,32 @@ const dsm_api_table *Load(string& why)
 	if(library == NULL)
 	{
 		const char *reason = dlerror();
-		why = "Deep shadows: cannot load the shadow library " + path + (reason != NULL ? string(": ") + reason : string()) + ".";
-		return NULL;
+		throw POV_EXCEPTION(kCannotOpenFileErr, "Deep shadows: cannot load the shadow library " + path + (reason != NULL ? string(": ") + reason : string()) + ".");
 	}
 
 	const dsm_api_table *api = reinterpret_cast<const dsm_api_table *>(dlsym(library, "dsm_api"));
+	std::ostringstream why;
 
 	if(api == NULL)
-		why = "Deep shadows: " + path + " is not a shadow library (it has no symbol dsm_api).";
+		why << "Deep shadows: " << path << " is not a shadow library (it has no symbol dsm_api).";
 	else if((api->abi != DSM_ABI) || (api->size < sizeof(dsm_api_table)))
-	{
-		std::ostringstream sentence;
-		sentence << "Deep shadows: the shadow library " << path << " has interface " << api->abi << " (" << api->size
-		         << " bytes), this program needs interface " << DSM_ABI << " (" << sizeof(dsm_api_table) << " bytes).";
-		why = sentence.str();
-	}
+		why << "Deep shadows: the shadow library " << path << " has interface " << api->abi << " (" << api->size
+		    << " bytes), this program needs interface " << DSM_ABI << " (" << sizeof(dsm_api_table) << " bytes).";
 	else
-		return api; // never closed: its table lives as long as the process
+		return *api; // never closed: its table lives as long as the process
 
 	dlclose(library);
-	return NULL;
+	throw POV_EXCEPTION(kCannotOpenFileErr, why.str());
 }
 
 }
 
+/// Every look-up comes here, so there is no lock once the library is loaded. A failure is tried again by the next call.
 const dsm_api_table& ShadowPlugin::Api()
 {
-	static std::mutex once;
-	static const dsm_api_table *api = NULL;
+	static const dsm_api_table& api = Load();
 
-	std::lock_guard<std::mutex> lock(once);
-
-	if(api == NULL)
-	{
-		string why;
-		api = Load(why);
-		if(api == NULL)
-			throw POV_EXCEPTION(kCannotOpenFileErr, why);
-	}
-
-	return *api;
+	return api;
 }
 
 }
