@@ -39,6 +39,7 @@ packages=(
   libboost-dev libboost-thread-dev libopenexr-dev         # POV-Ray's libraries
   libjpeg-dev libpng-dev libtiff-dev zlib1g-dev
   libopenimageio-dev openimageio-tools libcmocka-dev      # map files, image comparison, unit tests
+  gnuplot-nox                                             # dsmtool plot
 )
 
 # As root, or through sudo.

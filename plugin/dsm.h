@@ -26,6 +26,9 @@
  *             (DSM_LIGHT_PARALLEL), so that the faces of a cube meet without a seam.
  * Determinism Samples are a hash of pixel and sample number. Any number of threads and any order of look-ups
  *             bake the same bytes, as long as the host's `trace` gives the same events for the same ray.
+ * Memory      Tiles of a map hold at most `cache` megabytes, and what the tiles of one look-up take for each thread. Tiles
+ *             that have not been used for long are given up, and made or read again when needed.
+ * Files       What reads and writes files is loaded when a file is first named. It may start threads of its own.
  */
 #ifndef DSM_H
 #define DSM_H
@@ -36,7 +39,7 @@
 extern "C" {
 #endif
 
-#define DSM_ABI 1u
+#define DSM_ABI 2u
 
 typedef int32_t dsm_result;
 enum {
@@ -46,14 +49,17 @@ enum {
                          from it, or the tile failed): trace the ray */
   DSM_CANCELLED = 3,  /* the host's `pause` asked to stop; the tile is absent again */
   DSM_NO_MEMORY = 4,
-  DSM_INVALID = 5     /* an argument or a setting is out of its range */
+  DSM_INVALID = 5,    /* an argument or a setting is out of its range */
+  DSM_REFUSED = 6,    /* a file cannot be read, used or written; the sentence says which, and what is wrong with it */
+  DSM_DONE = 7        /* bake_next: no tile is left to take */
 };
 
 /* ---- Settings: the words of a deep_shadow { } block ---------------------------------------------------- */
 
 typedef enum {
   DSM_NUMBERS,  /* `min_count` to `max_count` numbers */
-  DSM_CHOICE    /* one of `choices`, followed by up to `max_count` numbers */
+  DSM_CHOICE,   /* one of `choices`, followed by up to `max_count` numbers */
+  DSM_TEXT      /* a string that is not empty: the name of a file */
 } dsm_type;
 
 /* One row of the published table. Parser, documentation and tools all read this and nothing else. */
@@ -88,7 +94,7 @@ typedef struct {
   double direction[3];       /* unit length; not read for DSM_LIGHT_POINT */
   double cos_angle;          /* DSM_LIGHT_SPOT: cosine of the half angle beyond which there is no light */
   double radius;             /* DSM_LIGHT_PARALLEL: no light farther than this from the axis; 0: no such limit */
-  const dsm_box *casters;    /* one box for each finite object that casts a shadow; read by map_create only */
+  const dsm_box *casters;    /* one box for each finite object that casts a shadow; outlives the map */
   uint64_t caster_count;     /* 0: the map is all lit */
 } dsm_light;
 
@@ -137,8 +143,12 @@ typedef struct {
  * surface, one across the light for a small object); the library uses the one that needs the least bias. */
 typedef struct {
   double point[3];
-  uint32_t plane_count;   /* 0: no surface here (media), or one that the map does not hold */
-  dsm_plane planes[2];    /* the first is the tangent plane at the point */
+  uint32_t plane_count;     /* 0: no surface here (media), or one that the map does not hold */
+  uint32_t has_footprint;   /* 0: only the point counts */
+  dsm_plane planes[2];      /* the first is the tangent plane at the point */
+  /* The sides of the parallelogram around the point over which the answer is averaged, scene units: what one camera ray
+   * stands for. */
+  double footprint[2][3];
 } dsm_receiver;
 
 typedef struct {
@@ -149,7 +159,10 @@ typedef struct {
   uint64_t rays, events, events_dropped, events_clamped;
   uint64_t vertices_in;    /* of all averaged visibility functions, before compression */
   uint64_t vertices;       /* stored */
-  uint64_t bytes;          /* held by tiles, bookkeeping included */
+  uint64_t bytes;          /* held by tiles now, bookkeeping included */
+  uint64_t bytes_most;     /* the most that tiles have held at a time */
+  uint64_t tiles_read;     /* from a file */
+  uint64_t tiles_evicted;  /* given up to stay within `cache` */
   double near_depth, far_depth;
   double bake_seconds;     /* of all workers, host's tracing included */
   double trace_seconds;    /* the part of bake_seconds spent in host->trace */
@@ -168,6 +181,8 @@ typedef struct {
   dsm_settings *(*settings_create)(void);                                     /* [any] NULL: out of memory */
   dsm_result (*settings_set)(dsm_settings *settings, uint32_t parameter, const char *choice,
                              const double *numbers, uint32_t count, char *why, uint64_t why_size); /* [one] */
+  /* What a DSM_TEXT parameter was set to, NULL if it was not. Lives as long as the settings. */
+  const char *(*settings_text)(const dsm_settings *settings, uint32_t parameter);      /* [any] */
   void (*settings_destroy)(dsm_settings *settings);                           /* [one] */
 
   /* Fits faces to the casters and lays out tiles; traces nothing yet. Settings and light are copied; `host` is
@@ -185,6 +200,26 @@ typedef struct {
   dsm_result (*lookup)(dsm_worker *worker, const dsm_receiver *receiver, double rgb[3]);        /* [one] */
 
   void (*statistics)(const dsm_map *map, dsm_statistics *out);                /* [any] out->size set by the caller */
+
+  /* Whole maps and their files. The file names among the settings are for the host, which knows where files may lie;
+   * here it hands over a path. All trace a few light rays through the worker, to know the scene again: the file of
+   * another light, of other settings, or of a scene that has changed is refused with a sentence that says what
+   * differs. */
+
+  /* From now on tiles are read from the file when first needed, and never baked. Before the map's first look-up. */
+  dsm_result (*load)(dsm_worker *worker, const char *path);                   /* [one] for the map */
+
+  /* Announces that the whole map is to be baked and saved. Fails early if the file cannot be written. */
+  dsm_result (*save_begin)(dsm_worker *worker, const char *path);             /* [one] for the map */
+
+  /* Bakes one tile that nobody has taken yet, finest level first, and sets `share` to the part of the map that is
+   * done. DSM_OK until there is none left: DSM_DONE. To be called by as many threads as like. */
+  dsm_result (*bake_next)(dsm_worker *worker, double *share);                 /* [one] */
+
+  /* Writes the file under a temporary name and renames it: there is the old file or the new one, never half of one.
+   * After DSM_DONE everywhere; nobody looks up meanwhile. A map that is destroyed before leaves no file. `share` of the writing goes to
+   * `progress`, which may be NULL. */
+  dsm_result (*save_end)(dsm_worker *worker, void (*progress)(void *worker_data, double share));   /* [one] for the map */
 
   /* For `trace`. Equal depths keep the order of the calls. DSM_NO_MEMORY is final for the batch.
    * An event outside [near, far] is moved to the nearer end; one with a NaN or infinite number is dropped;

@@ -5,7 +5,9 @@
 #include "core/settings.h"
 #include "map/lookup.h"
 #include "map/map.h"
+#include "map/whole_map.h"
 #include "map/worker.h"
+#include "store/saved_map.h"
 
 #ifndef PACKAGE_VERSION
 #define PACKAGE_VERSION "0.1"   /* configure knows better */
@@ -20,6 +22,7 @@ const dsm_api_table dsm_api = {
   .parameter_count = WORD_COUNT,
   .settings_create = settings_create,
   .settings_set = settings_set,
+  .settings_text = settings_text,
   .settings_destroy = settings_destroy,
   .map_create = map_create,
   .map_destroy = map_destroy,
@@ -27,6 +30,10 @@ const dsm_api_table dsm_api = {
   .worker_destroy = worker_destroy,
   .lookup = map_lookup,
   .statistics = map_statistics,
+  .load = saved_map_load,
+  .save_begin = saved_map_begin,
+  .bake_next = map_bake_next,
+  .save_end = saved_map_end,
   .sink_surface = sink_surface,
   .sink_span = sink_span,
   .sink_mark = sink_mark,

@@ -7,6 +7,9 @@
 // Declare=Curl=1        0: straight hairs of one cylinder each
 // Declare=Resolution=512 Declare=Samples=4   of the three maps
 // Declare=White=0       1: everything matte white, so that the picture shows the shadows alone
+// Declare=Close=0       1: the first light alone, and its shadow on the floor from nearby (their figure 7)
+// Declare=Tolerance=-1 Declare=Blur=0 Declare=Cache=1024   as in deep_shadow; -1: automatic
+// Declare=File=0        1: the maps are saved as hairball1.exr, ...; 2: they are loaded from there
 #version 3.7;
 global_settings { assumed_gamma 1 }
 
@@ -15,6 +18,11 @@ global_settings { assumed_gamma 1 }
 #ifndef (White) #declare White = 0; #end
 #ifndef (Resolution) #declare Resolution = 512; #end
 #ifndef (Samples)    #declare Samples = 4; #end
+#ifndef (Tolerance)  #declare Tolerance = -1; #end
+#ifndef (Blur)       #declare Blur = 0; #end
+#ifndef (Cache)      #declare Cache = 1024; #end
+#ifndef (Close)      #declare Close = 0; #end
+#ifndef (File)       #declare File = 0; #end
 
 #declare HairRadius = 0.001;
 #declare Segments = 12;       // cylinders a curled hair
@@ -23,14 +31,24 @@ global_settings { assumed_gamma 1 }
 #declare Dice = seed(2000);
 
 camera {
-  location <0, 3.6, -10.2>
+  location #if (Close) <6.4, 3.4, 6.8> #else <0, 3.6, -10.2> #end
   right x*image_width/image_height
-  look_at <0.2, -0.28, 0>
-  angle 36
+  look_at #if (Close) <2.5, -1.8, 2.7> #else <0.2, -0.28, 0> #end
+  angle #if (Close) 22 #else 36 #end
 }
 
+#macro Shadow(Number)
+  deep_shadow {
+    resolution Resolution samples Samples cache Cache
+    #if (Tolerance >= 0) tolerance Tolerance #end
+    #if (Blur > 0) blur Blur #end
+    #if (File = 1) save_file concat("hairball", str(Number, 0, 0), ".exr") #end
+    #if (File = 2) load_file concat("hairball", str(Number, 0, 0), ".exr") #end
+  }
+#end
+
 #if (White) // a third each, so that full light is 1
-  #declare Key = rgb 1/3;
+  #declare Key = rgb (Close ? 1 : 1/3);
   #declare Fill = rgb 1/3;
   #declare Rim = rgb 1/3;
 #else
@@ -42,18 +60,20 @@ camera {
 light_source {
   <-5.0, 8.0, -5.5>, Key
   spotlight point_at <0.1, -0.2, 0> radius 12 falloff 46
-  deep_shadow { resolution Resolution samples Samples }
+  Shadow(1)
 }
+#if (!Close)
 light_source {
   <7.0, 5.5, -4.5>, Fill
   spotlight point_at <0, -0.2, 0> radius 12 falloff 46
-  deep_shadow { resolution Resolution samples Samples }
+  Shadow(2)
 }
 light_source {
   <1.5, 8.0, 6.5>, Rim
   spotlight point_at <0, -0.2, 0> radius 12 falloff 46
-  deep_shadow { resolution Resolution samples Samples }
+  Shadow(3)
 }
+#end
 
 #declare Matte = finish { ambient 0 diffuse 1 }
 #macro HairTexture(Colour)
@@ -67,9 +87,11 @@ light_source {
   }
 #end
 
-// The floor is infinite, so that the maps are framed to the ball alone.
-plane {
-  y, -1.8
+// The floor is infinite, so that the maps are framed to the ball alone; from nearby it is a slab that is in the map, with
+// hair in 2/5 of the map's pixels.
+#if (Close) box { <-1.8, -1.9, -1.8>, <4.0, -1.8, 4.0>
+#else plane { y, -1.8
+#end
   #if (White) pigment { rgb 1 } finish { Matte }
   #else pigment { rgb <0.30, 0.36, 0.40> } finish { ambient 0 diffuse 0.85 }
   #end

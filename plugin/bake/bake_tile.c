@@ -3,12 +3,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
-#include "bake/pack_tile.h"
 #include "bake/smooth_noise.h"
 #include "core/compress.h"
 #include "core/transmittance.h"
+#include "map/pack_tile.h"
 
 enum { BATCH_RAYS = 4096 };   /* enough for a host to sort its objects by; a quarter of a megabyte of rays */
 
@@ -27,10 +28,12 @@ static int paused(const bake_job *job)
   return job->host->pause && job->host->pause(job->host_data);
 }
 
+static int is_automatic(const dsm_settings *settings) { return settings->tolerance < 0; }
+
 /* The smallest tolerance that a pixel of this map can come to have: what tracing has to be good for. */
 static double finest_tolerance(const dsm_settings *settings)
 {
-  return settings->tolerance >= 0 ? settings->tolerance : LEAST_TOLERANCE;
+  return is_automatic(settings) ? LEAST_TOLERANCE : settings->tolerance;
 }
 
 /* Depth that a surface up to about 60 degrees from facing the light takes within a pixel's filter. */
@@ -55,15 +58,15 @@ static dsm_result make_room(bake_scratch *s, uint32_t samples, uint32_t rays)
   if (s->room_samples < samples) {
     free(s->first);
     free(s->weights);
-    free(s->order);
+    free(s->path);
     s->room_samples = 0;
     s->first = malloc((samples + 1) * sizeof *s->first);
     s->weights = malloc(samples * sizeof *s->weights);
-    s->order = malloc(samples * sizeof *s->order);
-    if (!s->first || !s->weights || !s->order)
+    s->path = malloc(samples * sizeof *s->path);
+    if (!s->first || !s->weights || !s->path)
       return DSM_NO_MEMORY;
     s->room_samples = samples;
-    pixel_sample_path(samples, s->order);
+    pixel_sample_path(samples, s->path);
     for (uint32_t i = 0; i < samples; i++)
       s->weights[i] = 1.0 / samples;
   }
@@ -78,32 +81,40 @@ static dsm_result make_room(bake_scratch *s, uint32_t samples, uint32_t rays)
   return DSM_OK;
 }
 
-static void make_rays(const bake_job *job, uint32_t face_index, uint32_t x, uint32_t y, dsm_ray *rays)
+/* The pixel's rays, neighbours one after the other. */
+static void make_rays(const bake_job *job, const pixel_point *path, uint32_t face_index, uint32_t x, uint32_t y,
+                      dsm_ray *rays)
 {
   pixel_filter filter = {job->settings->filter, job->settings->filter_width};
   pixel_seed seed = pixel_sample_seed(face_index, x, y);
   for (uint32_t i = 0; i < job->settings->samples; i++) {
     double offset[2];
-    pixel_sample_offset(&filter, seed, i, offset);
+    pixel_sample_offset(&filter, seed, path[i], offset);
     projection_ray(job->projection, face_index, x + 0.5 + offset[0], y + 0.5 + offset[1], &rays[i]);
   }
 }
 
-/* Transmittances of the pixel's rays into s->transmittances, s->first. Tells whether any event is there,
- * and whether any is a volume span. */
-static dsm_result build_rays(const bake_job *job, bake_scratch *s, uint32_t first_ray, int *dimmed, int *volume)
+/* What the events of a pixel are. */
+typedef struct { int coloured, volume; } pixel_kind;
+
+static pixel_kind kind_of(const event *events, size_t count)
+{
+  pixel_kind kind = {0, 0};
+  for (size_t i = 0; i < count; i++) {
+    kind.coloured |= !rgb_is_grey(events[i].transmittance);
+    kind.volume |= events[i].back > events[i].front;
+  }
+  return kind;
+}
+
+/* A pixel with volume spans: the transmittance of every ray, then their average and its noise. */
+static dsm_result average_volume(const bake_job *job, bake_scratch *s, uint32_t first_ray)
 {
   uint32_t samples = job->settings->samples;
   double tolerance = finest_tolerance(job->settings);
-  *dimmed = s->sink.first[first_ray] < s->sink.first[first_ray + samples];
-  *volume = 0;
-  if (!*dimmed)
-    return DSM_OK;
   s->transmittances.count = 0;
   for (uint32_t i = 0; i < samples; i++) {
     size_t begin = s->sink.first[first_ray + i], end = s->sink.first[first_ray + i + 1];
-    for (size_t k = begin; k < end && !*volume; k++)
-      *volume = s->sink.ordered[k].back > s->sink.ordered[k].front;
     s->first[i] = s->transmittances.count;
     dsm_result result = transmittance_build(s->sink.ordered + begin, end - begin, tolerance,
                                             &s->transmittances);
@@ -111,7 +122,9 @@ static dsm_result build_rays(const bake_job *job, bake_scratch *s, uint32_t firs
       return result;
   }
   s->first[samples] = s->transmittances.count;
-  return DSM_OK;
+  average_input in = {s->transmittances.data, s->first, s->weights, samples};
+  dsm_result result = average_sweep(&in, &s->heap, &s->average);
+  return result == DSM_OK && is_automatic(job->settings) ? noise_measure(&s->noise, &in, &s->average) : result;
 }
 
 static int is_grey(const vertices *v)
@@ -127,37 +140,39 @@ static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, const noise_l
                              uint32_t first_ray, baked_pixel *pixel, tile_tally *tally)
 {
   uint32_t samples = job->settings->samples;
-  *pixel = (baked_pixel){s->stored.count, 0, 0, 0};
-  for (uint32_t i = 0; i < samples; i++)
-    if (s->sink.marked[first_ray + i]) {
-      pixel->marked = 1;
-      return DSM_OK;
-    }
-  int dimmed, volume;
-  dsm_result result = build_rays(job, s, first_ray, &dimmed, &volume);
-  if (result != DSM_OK || !dimmed)
-    return result;
-  average_input in = {s->transmittances.data, s->first, s->weights, samples};
+  *pixel = (baked_pixel){.first = s->stored.count};
+  if (memchr(s->sink.marked + first_ray, 1, samples)) {
+    pixel->marked = 1;
+    return DSM_OK;
+  }
+  size_t begin = s->sink.first[first_ray], count = s->sink.first[first_ray + samples] - begin;
+  if (count == 0)
+    return DSM_OK;
+  const event *events = s->sink.ordered + begin;
+  pixel_kind kind = kind_of(events, count);
+  step_input steps = {events, count, first_ray, samples, kind.coloured ? 3 : 1};
   s->average.count = 0;
-  result = average_sweep(&in, &s->heap, &s->average);
+  dsm_result result = kind.volume ? average_volume(job, s, first_ray)
+                                  : step_sweep(&steps, &s->steps, is_automatic(job->settings) ? &s->noise : NULL,
+                                               &s->average);
   if (result != DSM_OK)
     return result;
-  pixel->coloured = !is_grey(&s->average);
+  pixel->coloured = kind.coloured && !is_grey(&s->average);
   int channels = pixel->coloured ? 3 : 1;
   const vertices *clean = &s->average;
-  if (job->settings->tolerance < 0) {
+  if (is_automatic(job->settings)) {
     s->smooth.count = 0;
-    result = noise_measure(&s->noise, &in, s->order, &s->average);
-    if (result == DSM_OK)
-      result = smooth_noise(&s->average, &s->noise, channels, limits, &s->relative, &s->smooth);
+    result = smooth_noise(&s->average, &s->noise, channels, limits, &s->relative, &s->smooth);
     if (result != DSM_OK)
       return result;
     clean = &s->smooth;
+    pixel->tolerance = noise_rms(&s->noise, s->average.count);
   }
   double tolerance = finest_tolerance(job->settings);
-  if (volume)
-    tolerance = fmax(0, tolerance - spent_on_rays(job->settings));
-  result = compress_greedy(clean->data, clean->count, channels, tolerance, &s->stored);
+  pixel->tolerance = fmax(pixel->tolerance, tolerance);
+  tolerance -= VALUE_ROUNDING + (kind.volume ? spent_on_rays(job->settings) : 0);
+  tolerance = fmax(0, tolerance);
+  result = compress_minimal(clean->data, clean->count, channels, tolerance, &s->stored);
   pixel->count = s->stored.count - pixel->first;
   tally->vertices_in += s->average.count;
   return result;
@@ -200,12 +215,12 @@ static dsm_result bake_pixels(const bake_job *job, bake_scratch *s, const tile_k
   dsm_result result = make_room(s, samples, batch * samples);
   s->stored.count = 0;
   for (int i = 0; i < TILE_PIXELS; i++)
-    s->pixels[i] = (baked_pixel){0, 0, 0, 0};
+    s->pixels[i] = (baked_pixel){0};
 
   for (uint32_t done = 0; result == DSM_OK && done < total; done += batch) {
     uint32_t count = batch < total - done ? batch : total - done;
     for (uint32_t i = 0; i < count; i++)
-      make_rays(job, key->face, part.x + (done + i) % part.across, part.y + (done + i) / part.across,
+      make_rays(job, s->path, key->face, part.x + (done + i) % part.across, part.y + (done + i) / part.across,
                 s->rays + (size_t)i * samples);
     result = paused(job) ? DSM_CANCELLED : trace_batch(job, s, count * samples, tally);
     for (uint32_t i = 0; i < count && result == DSM_OK; i++) {
@@ -232,8 +247,6 @@ dsm_result bake_tile(const bake_job *job, bake_scratch *s, const tile_key *key, 
       tally->pixels_coloured += s->pixels[i].coloured != 0;
       tally->vertices += s->pixels[i].count;
     }
-  if (result == DSM_OK && (*out)->kind == TILE_STORED)
-    tally->bytes += (*out)->size;
   tally->events_dropped += s->sink.dropped - dropped;
   tally->events_clamped += s->sink.clamped - clamped;
   tally->bake_seconds += seconds() - start;
@@ -245,12 +258,13 @@ void bake_scratch_free(bake_scratch *s)
   free(s->rays);
   free(s->first);
   free(s->weights);
-  free(s->order);
+  free(s->path);
   sink_free(&s->sink);
   vertices_free(&s->transmittances);
   vertices_free(&s->average);
   vertices_free(&s->stored);
   average_free(&s->heap);
+  step_free(&s->steps);
   noise_free(&s->noise);
   vertices_free(&s->smooth);
   vertices_free(&s->relative);

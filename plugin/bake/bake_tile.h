@@ -4,15 +4,17 @@
  *
  *   pixels --> rays --> host->trace --> events --> transmittance --> average --> compressed --> tile
  *              a batch of whole pixels at a time   a ray at a time   a pixel at a time
+ *                                             \__ surfaces only: at once __/
  */
 #ifndef DSM_BAKE_BAKE_TILE_H
 #define DSM_BAKE_BAKE_TILE_H
 
-#include "bake/baked_pixel.h"
 #include "bake/noise_profile.h"
+#include "bake/step_sweep.h"
 #include "core/average.h"
 #include "core/events.h"
 #include "core/pixel_sample.h"
+#include "map/baked_pixel.h"
 #include "map/map.h"
 
 /* What a bake needs from elsewhere. */
@@ -28,11 +30,12 @@ typedef struct {
   dsm_ray *rays;
   size_t *first;        /* of a pixel's rays in `transmittances` */
   double *weights;
-  uint32_t *order;      /* pixel_sample_path */
+  pixel_point *path;
   uint32_t room_rays, room_samples;
   dsm_sink sink;
   vertices transmittances, average, stored;
   average_scratch heap;
+  step_scratch steps;
   noise_profile noise;
   vertices smooth, relative;   /* the average without its noise, and a stretch of it */
   baked_pixel pixels[TILE_PIXELS];   /* vertices in `stored` */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static dsm_result make_room(noise_profile *s, size_t count)
+dsm_result noise_reserve(noise_profile *s, size_t count)
 {
   if (s->room < count) {
     noise_free(s);
@@ -18,8 +18,6 @@ static dsm_result make_room(noise_profile *s, size_t count)
     }
     s->room = room;
   }
-  memset(s->allowed, 0, count * sizeof *s->allowed);
-  memset(s->pairs, 0, count * sizeof *s->pairs);
   return DSM_OK;
 }
 
@@ -119,32 +117,26 @@ static void add_pair(reader a, reader b, const vertices *mean, noise_profile *s)
   }
 }
 
-dsm_result noise_measure(noise_profile *s, const average_input *in, const uint32_t *order,
-                         const vertices *mean)
+dsm_result noise_measure(noise_profile *s, const average_input *in, const vertices *mean)
 {
   size_t n = mean->count;
   if (n == 0)
     return DSM_OK;
-  dsm_result result = make_room(s, n);
+  dsm_result result = noise_reserve(s, n);
   if (result != DSM_OK)
     return result;
+  memset(s->allowed, 0, n * sizeof *s->allowed);
+  memset(s->pairs, 0, n * sizeof *s->pairs);
   for (uint32_t k = 0; k + 1 < in->count; k++)
-    add_pair(reader_of(in, order[k]), reader_of(in, order[k + 1]), mean, s);
+    add_pair(reader_of(in, k), reader_of(in, k + 1), mean, s);
 
-  double rays = in->count, most = noise_ceiling(rays), squares = 0, pairs = 0;
+  double squares = 0, pairs = 0;
   for (size_t i = 0; i < n; i++) {
     squares += s->allowed[i];
     pairs += s->pairs[i];
-    if (pairs < 0.5) {   /* whole numbers, and exact; the squares have rounded */
+    if (pairs < 0.5)   /* whole numbers, and exact; the squares have rounded */
       squares = 0;
-      s->allowed[i] = 0;
-      continue;
-    }
-    /* Every disagreeing ray has two neighbours. From four such rays on, half the error is more than one ray's
-     * step; the hundredth lets that step itself pass. */
-    double error = sqrt(fmax(0, squares) / (2 * rays * (rays - 1)));
-    double share = fmax(0.5, 1.01 / sqrt(fmax(1, pairs / 2)));
-    s->allowed[i] = fmin(most, share * error);
+    s->allowed[i] = noise_allowed(squares, pairs, in->count);
   }
   return DSM_OK;
 }

@@ -18,19 +18,45 @@
 /* LV 4: half of the worst noise that this many rays can have. */
 static inline double noise_ceiling(double rays) { return 0.25 / sqrt(rays); }
 
+/* What the disagreement of a pixel's rays allows: half the standard error, but at least what one of the
+ * disagreeing rays adds, as that ray's own step lies where chance put it; at most noise_ceiling. `squares` is
+ * the sum of the squared differences of neighbours, `pairs` how many neighbours differ. */
+static inline double noise_allowed(double squares, double pairs, double rays)
+{
+  if (!(squares > 0 && pairs > 0))
+    return 0;
+  /* Every disagreeing ray has two neighbours. From four such rays on, half the error is more than one ray's
+   * step; the hundredth lets that step itself pass. */
+  double share = pairs > 8 ? 0.5 : 1.01 / sqrt(fmax(1, pairs / 2));
+  double error = share * sqrt(squares / (2 * rays * (rays - 1))), most = noise_ceiling(rays);
+  return error < most ? error : most;
+}
+
 /* Zero-initialise; a caller keeps it between pixels. */
 typedef struct {
-  double *allowed;   /* error that is noise, from a vertex of the average to the next, or to infinity */
+  double *allowed;   /* error that is noise, from a vertex of the average to the next, or to infinity; of the
+                        vertices at one depth the last tells */
   double *pairs;     /* scratch */
   size_t room;
 } noise_profile;
 
-/* Measures `in` (equal weights), whose average is `mean`, into profile->allowed, one number a vertex: half
- * the standard error, but at least what one of the disagreeing rays adds, as that ray's own step lies where
- * chance put it. At most noise_ceiling. `order` is that of pixel_sample_path. 0 where the rays agree,
- * or for a single ray. */
-dsm_result noise_measure(noise_profile *profile, const average_input *in, const uint32_t *order,
-                         const vertices *mean);
+/* Room for so many vertices; what they hold is not kept. */
+dsm_result noise_reserve(noise_profile *profile, size_t count);
+
+/* Measures `in` (equal weights, rays in the order of pixel_sample_path, so that neighbours come one after the
+ * other), whose average is `mean`, into profile->allowed, one number a vertex. 0 where the rays agree, or for
+ * a single ray. */
+dsm_result noise_measure(noise_profile *profile, const average_input *in, const vertices *mean);
+
+/* Root mean square of `allowed` over the `count` vertices of the average. */
+static inline double noise_rms(const noise_profile *profile, size_t count)
+{
+  double squares = 0;
+  for (size_t i = 0; i < count; i++)
+    squares += profile->allowed[i] * profile->allowed[i];
+  return count ? sqrt(squares / (double)count) : 0;
+}
+
 void noise_free(noise_profile *profile);
 
 #endif

@@ -2,6 +2,7 @@
 #include "bake/smooth_noise.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "core/compress.h"
 
@@ -59,25 +60,64 @@ static int find_stretch(const vertices *v, const noise_profile *profile, const n
   return 1;
 }
 
-/* Compresses one stretch. The greedy starts from 1, so values are taken relative to those in front. */
+/* Vertices of a stretch relative to the light in front of it. */
+static dsm_result divide(const vertices *v, const stretch *s, int channels, rgb front, vertices *out)
+{
+  dsm_result result = DSM_OK;
+  out->count = 0;
+  for (size_t i = s->first; i <= s->last && result == DSM_OK; i++) {
+    rgb relative = rgb_grey(1);
+    for (int c = 0; c < channels; c++)
+      if (front.c[c] > 0)
+        relative.c[c] = v->data[i].v.c[c] / front.c[c];
+    result = vertices_push(out, v->data[i].z, relative);
+  }
+  return result;
+}
+
+/* A function that begins with a step from 1 does not store the near side of it; behind other vertices it must. */
+static dsm_result store_near_side(vertices *list, size_t begin)
+{
+  if (list->count == begin)
+    return DSM_OK;
+  vertex first = list->data[begin];
+  if (first.v.c[0] == 1 && first.v.c[1] == 1 && first.v.c[2] == 1)
+    return DSM_OK;
+  dsm_result result = vertices_push(list, first.z, first.v);
+  if (result == DSM_OK) {
+    memmove(&list->data[begin + 1], &list->data[begin], (list->count - 1 - begin) * sizeof(vertex));
+    list->data[begin].v = rgb_grey(1);
+  }
+  return result;
+}
+
+/* Appends one stretch, compressed. Compression starts from 1, so it works on values relative to those in front. */
+static dsm_result compress_stretch(const vertices *v, const stretch *s, int channels, rgb front,
+                                   vertices *scratch, vertices *out)
+{
+  const vertex *from = v->data + s->first;
+  double largest = channels == 1 ? front.c[0] : rgb_max(front);
+  if (s->first > 0) {
+    dsm_result result = divide(v, s, channels, front, scratch);
+    if (result != DSM_OK)
+      return result;
+    from = scratch->data;
+  }
+  size_t begin = out->count;
+  dsm_result result = compress_minimal(from, s->last + 1 - s->first, channels, largest > 0 ? s->allowed / largest : 0, out);
+  return result == DSM_OK && s->first > 0 ? store_near_side(out, begin) : result;
+}
+
+/* Appends one stretch without its noise; both its ends are held, or the first if it never ends. */
 static dsm_result smooth_stretch(const vertices *v, const stretch *s, int channels, vertices *scratch,
                                  vertices *out)
 {
   rgb front = s->first == 0 ? rgb_grey(1) : v->data[s->first].v, end = v->data[s->last].v;
-  double largest = channels == 1 ? front.c[0] : rgb_max(front);
   /* a slope may lead up to here */
   dsm_result result = s->first > 0 ? vertices_push(out, v->data[s->first].z, front) : DSM_OK;
   size_t begin = out->count;
-  scratch->count = 0;
-  for (size_t i = s->first; i <= s->last && result == DSM_OK; i++) {
-    rgb relative;
-    for (int c = 0; c < 3; c++)
-      relative.c[c] = front.c[c] > 0 ? v->data[i].v.c[c] / front.c[c] : 1;
-    result = vertices_push(scratch, v->data[i].z, relative);
-  }
   if (result == DSM_OK)
-    result = compress_greedy(scratch->data, scratch->count, channels, largest > 0 ? s->allowed / largest : 0,
-                             out);
+    result = compress_stretch(v, s, channels, front, scratch, out);
   if (result != DSM_OK)
     return result;
   for (size_t i = begin; i < out->count; i++) {

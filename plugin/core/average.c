@@ -10,6 +10,8 @@
 
 #include <stdlib.h>
 
+#include "core/compensated.h"
+
 #define STEEPEST 1e280   /* a steeper ramp is a step at its far end */
 
 /* A function and its next vertex, and the value that the sum holds of it once that vertex is reached. */
@@ -20,8 +22,6 @@ struct average_cursor {
   uint32_t function;
 };
 
-typedef struct { double sum, lost; } compensated;   /* Neumaier's summation: `lost` is what rounding took */
-
 typedef struct {
   const average_input *in;
   struct average_cursor *heap;   /* the first `alive` by depth; then those that stay as they are */
@@ -31,13 +31,7 @@ typedef struct {
   int rose[3], fell[3];          /* at this depth, by a step */
 } sweep;
 
-static void add(compensated *to, double x) {
-  double sum = to->sum + x;
-  to->lost += fabs(to->sum) >= fabs(x) ? (to->sum - sum) + x : (x - sum) + to->sum;
-  to->sum = sum;
-}
-
-static double total(const compensated *of) { return fmin(1, fmax(0, of->sum + of->lost)); }
+static double total(const compensated *of) { return fmin(1, fmax(0, compensated_total(of))); }
 
 static int is_zero(rgb a) { return a.c[0] == 0 && a.c[1] == 0 && a.c[2] == 0; }
 
@@ -85,7 +79,7 @@ static void advance(sweep *s, struct average_cursor *cursor) {
   rgb jump = rgb_sub(all[i].v, cursor->held), slope = rgb_grey(0);
   for (int c = 0; c < 3; ++c) {
     if (jump.c[c] == 0) continue;
-    add(&s->value[c], weight * jump.c[c]);
+    compensated_add(&s->value[c], weight * jump.c[c]);
     s->rose[c] |= jump.c[c] > 0;
     s->fell[c] |= jump.c[c] < 0;
   }
@@ -114,7 +108,7 @@ static void sum_afresh(sweep *s, double z) {
       const vertex *b = &s->in->all[cursor->next], *a = b - 1;
       v = rgb_lerp(a->v, b->v, (z - a->z) / (b->z - a->z));
     }
-    for (int c = 0; c < 3; ++c) add(&s->value[c], s->in->weights[cursor->function] * v.c[c]);
+    for (int c = 0; c < 3; ++c) compensated_add(&s->value[c], s->in->weights[cursor->function] * v.c[c]);
   }
 }
 
@@ -160,7 +154,7 @@ dsm_result average_sweep(const average_input *in, average_scratch *scratch, vert
     double step = s.heap[0].z - z;
     z = s.heap[0].z;
     for (int c = 0; c < 3; ++c) {
-      if (slope.c[c] != 0) add(&s.value[c], slope.c[c] * step);
+      if (slope.c[c] != 0) compensated_add(&s.value[c], slope.c[c] * step);
       front.c[c] = total(&s.value[c]);
       s.rose[c] = s.fell[c] = 0;
     }
@@ -189,81 +183,4 @@ void average_free(average_scratch *scratch) {
   free(scratch->heap);
   free(scratch->slopes);
   *scratch = (average_scratch){0};
-}
-
-static int by_depth(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-/* The value behind depth z. */
-static rgb value_behind(const vertex *data, size_t count, double z) {
-  size_t low = 0, high = count;   /* the first vertex behind z */
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (data[middle].z <= z) low = middle + 1;
-    else high = middle;
-  }
-  if (low == 0) return rgb_grey(1);
-  if (low == count || data[low - 1].z == z) return data[low - 1].v;
-  const vertex *a = &data[low - 1], *b = &data[low];
-  return rgb_lerp(a->v, b->v, (z - a->z) / (b->z - a->z));
-}
-
-/* The average in front of z, and behind it if some function steps there (else the two are the same). */
-static void sum_at(const average_input *in, double z, rgb *before, rgb *after) {
-  compensated b[3] = {{0, 0}}, a[3] = {{0, 0}};
-  int steps = 0;
-  for (uint32_t i = 0; i < in->count; ++i) {
-    const vertex *data = in->all + in->first[i];
-    size_t count = in->first[i + 1] - in->first[i];
-    rgb front = vertices_at(data, count, z), behind = value_behind(data, count, z);
-    steps |= !is_zero(rgb_sub(front, behind));
-    for (int c = 0; c < 3; ++c) {
-      add(&b[c], in->weights[i] * front.c[c]);
-      add(&a[c], in->weights[i] * behind.c[c]);
-    }
-  }
-  for (int c = 0; c < 3; ++c) {
-    before->c[c] = total(&b[c]);
-    after->c[c] = steps ? total(&a[c]) : before->c[c];
-  }
-}
-
-static int grows(const average_input *in) {
-  for (uint32_t i = 0; i < in->count; ++i)
-    for (size_t k = in->first[i] + 1; k < in->first[i + 1]; ++k)
-      if (rgb_max(rgb_sub(in->all[k].v, in->all[k - 1].v)) > 0) return 1;
-  return 0;
-}
-
-dsm_result average_direct(const average_input *in, vertices *out) {
-  size_t begin = out->count, depths = 0, count = 0;
-  if (in->count > 0) count = in->first[in->count] - in->first[0];
-  if (count == 0) return DSM_OK;
-  double *z = count <= SIZE_MAX / sizeof *z ? malloc(count * sizeof *z) : NULL;
-  if (!z) return DSM_NO_MEMORY;
-  for (size_t i = 0; i < count; ++i) z[i] = in->all[in->first[0] + i].z;
-  qsort(z, count, sizeof *z, by_depth);
-  for (size_t i = 0; i < count; ++i)
-    if (depths == 0 || z[i] != z[depths - 1]) z[depths++] = z[i];
-
-  int may_grow = grows(in);
-  rgb last = rgb_grey(1), before, after;
-  dsm_result result = DSM_OK;
-  for (size_t d = 0; !result && d < depths; ++d) {
-    sum_at(in, z[d], &before, &after);
-    for (int c = 0; c < 3; ++c) {   /* weights add up to 1 but for rounding */
-      if (d == 0 && after.c[c] == before.c[c]) after.c[c] = 1;
-      if (d == 0) before.c[c] = 1;
-      if (!may_grow) before.c[c] = fmin(before.c[c], last.c[c]);
-      if (!may_grow) after.c[c] = fmin(after.c[c], before.c[c]);
-    }
-    last = after;
-    result = vertices_push(out, z[d], before);
-    if (!result && !is_zero(rgb_sub(after, before))) result = vertices_push(out, z[d], after);
-  }
-  if (result) out->count = begin;
-  free(z);
-  return result;
 }

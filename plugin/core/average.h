@@ -28,7 +28,7 @@ typedef struct {
 dsm_result average_sweep(const average_input *in, average_scratch *scratch, vertices *out);
 void average_free(average_scratch *scratch);
 
-/* The same by the direct O(n^2) sum, for tests and for merging a few functions. */
+/* The same by the direct O(n^2) sum, for tests. */
 dsm_result average_direct(const average_input *in, vertices *out);
 
 #endif

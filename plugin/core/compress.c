@@ -12,6 +12,8 @@
  */
 #include "core/compress.h"
 
+#include "core/extremes.h"
+
 #define STEEPEST 1e300
 
 typedef struct { double low[3], high[3]; } range;
@@ -58,8 +60,8 @@ static range window(const wedge *w, const place *p) {
   range r;
   for (int c = 0; c < w->channels; ++c) {
     double a = p->before.c[c], b = p->tall ? a : p->after.c[c];
-    r.low[c] = fmax(0, fmax(a, b) - w->tolerance);
-    r.high[c] = fmin(1, fmin(a, b) + w->tolerance);
+    r.low[c] = greater(0, greater(a, b) - w->tolerance);
+    r.high[c] = lesser(1, lesser(a, b) + w->tolerance);
   }
   return r;
 }
@@ -86,8 +88,8 @@ static int extend(wedge *w, const place *p) {
     }
     /* Depths can be so close that a slope overflows. Then the segment reaches that one window and no other. */
     if (slopes.low[c] >= STEEPEST || slopes.high[c] <= -STEEPEST) return 0;
-    slopes.low[c] = fmax(slopes.low[c], clamp((target.low[c] - y) / run, -STEEPEST, STEEPEST));
-    slopes.high[c] = fmin(slopes.high[c], clamp((target.high[c] - y) / run, -STEEPEST, STEEPEST));
+    slopes.low[c] = greater(slopes.low[c], clamp((target.low[c] - y) / run, -STEEPEST, STEEPEST));
+    slopes.high[c] = lesser(slopes.high[c], clamp((target.high[c] - y) / run, -STEEPEST, STEEPEST));
     if (slopes.low[c] > slopes.high[c]) return 0;
   }
   w->slopes = slopes;
@@ -105,7 +107,7 @@ static rgb end_of(const wedge *w, const place *p, const rgb *aim) {
     double y = w->y.c[c], run = p->z - w->z, low = w->slopes.low[c], high = w->slopes.high[c];
     double slope = aim ? clamp((aim->c[c] - y) / run, low, high) : low + (high - low) / 2;
     end.c[c] = clamp(y + slope * run, target.low[c], target.high[c]);   /* rounding */
-    if (!w->rises[c]) end.c[c] = fmin(end.c[c], y);
+    if (!w->rises[c]) end.c[c] = lesser(end.c[c], y);
   }
   return end;
 }
@@ -151,7 +153,7 @@ dsm_result compress_greedy(const vertex *in, size_t count, int channels, double 
       rgb end = end_of(&w, &p, &p.before), after = p.after;
       /* Behind the step the true value; but a channel that only comes along must not grow for that. */
       for (int c = 0; c < channels; ++c)
-        if (p.after.c[c] <= p.before.c[c]) after.c[c] = fmin(after.c[c], end.c[c]);
+        if (p.after.c[c] <= p.before.c[c]) after.c[c] = lesser(after.c[c], end.c[c]);
       result = put(&w, p.z, end);
       if (!result) result = put(&w, p.z, after);
       begin(&w, p.z, after);

@@ -105,42 +105,55 @@ static void sort_by_front(event *events, size_t count, event *scratch) {
   memcpy(events + to, scratch + left, (half - left) * sizeof *events);   /* the right rest is in place */
 }
 
+static int follows(const event *a, const event *b) {
+  return a->ray < b->ray || (a->ray == b->ray && a->front <= b->front);
+}
+
+/* By ray, with a counting sort, which keeps the host's order; then each ray's by depth. first[r] is where ray r
+ * begins. */
+static dsm_result sort_events(dsm_sink *sink, size_t longest) {
+  size_t *first = sink->first, room = sink->count + longest / 2 + 1;   /* the end is for merging in */
+  if (room > sink->room_sorted) {
+    if (room > SIZE_MAX / sizeof(event)) return DSM_NO_MEMORY;
+    event *sorted = realloc(sink->sorted, room * sizeof *sorted);
+    if (!sorted) return DSM_NO_MEMORY;
+    sink->sorted = sorted;
+    sink->room_sorted = room;
+  }
+  for (size_t i = 0; i < sink->count; ++i) sink->sorted[first[sink->events[i].ray]++] = sink->events[i];
+  /* Filling has moved each start to its end, which is the next ray's start. */
+  memmove(first + 1, first, sink->ray_count * sizeof *first);
+  first[0] = 0;
+
+  for (uint32_t r = 0; r < sink->ray_count; ++r)
+    sort_by_front(sink->sorted + first[r], first[r + 1] - first[r], sink->sorted + sink->count);
+  return DSM_OK;
+}
+
 dsm_result sink_order(dsm_sink *sink) {
   size_t *first = sink->first, longest = 0, sum = 0;
-  uint32_t rays = sink->ray_count;
+  int in_order = 1;
 
-  /* By ray: a counting sort, which keeps the host's order. */
-  memset(first, 0, ((size_t)rays + 1) * sizeof *first);
-  for (size_t i = 0; i < sink->count; ++i) ++first[sink->events[i].ray];
-  for (uint32_t r = 0; r <= rays; ++r) {
+  memset(first, 0, ((size_t)sink->ray_count + 1) * sizeof *first);
+  for (size_t i = 0; i < sink->count; ++i) {
+    ++first[sink->events[i].ray];
+    in_order &= i == 0 || follows(&sink->events[i - 1], &sink->events[i]);
+  }
+  for (uint32_t r = 0; r <= sink->ray_count; ++r) {
     size_t n = first[r];
     if (n > longest) longest = n;
     first[r] = sum;
     sum += n;
   }
-  /* Behind the output there is room for half the longest ray, to merge in. */
-  size_t room = sink->count + longest / 2 + 1;
-  if (room > sink->room_ordered) {
-    if (room > SIZE_MAX / sizeof(event)) return DSM_NO_MEMORY;
-    event *ordered = realloc(sink->ordered, room * sizeof *ordered);
-    if (!ordered) return DSM_NO_MEMORY;
-    sink->ordered = ordered;
-    sink->room_ordered = room;
-  }
-  for (size_t i = 0; i < sink->count; ++i) sink->ordered[first[sink->events[i].ray]++] = sink->events[i];
-  /* Filling has moved each start to its end, which is the next ray's start. */
-  memmove(first + 1, first, rays * sizeof *first);
-  first[0] = 0;
-
-  for (uint32_t r = 0; r < rays; ++r)
-    sort_by_front(sink->ordered + first[r], first[r + 1] - first[r], sink->ordered + sink->count);
-  return DSM_OK;
+  dsm_result result = in_order ? DSM_OK : sort_events(sink, longest);
+  sink->ordered = in_order ? sink->events : sink->sorted;
+  return result;
 }
 
 void sink_free(dsm_sink *sink) {
   free(sink->events);
   free(sink->first);
-  free(sink->ordered);
+  free(sink->sorted);
   free(sink->marked);
   *sink = (dsm_sink){0};
 }

@@ -22,9 +22,10 @@ struct dsm_sink {
   event *events;
   size_t count, capacity;
   size_t *first;      /* after sink_order: events of ray r are first[r] … first[r+1]-1 */
-  event *ordered;     /* sink_order's output, as long as `events` */
+  const event *ordered;    /* sink_order's output: `events` if they came in order, else `sorted` */
+  event *sorted;
   unsigned char *marked;   /* a byte a ray: its light can grow with depth */
-  size_t room_rays, room_ordered;
+  size_t room_rays, room_sorted;
   uint64_t dropped, clamped;
 };
 
@@ -37,7 +38,8 @@ dsm_result sink_begin(dsm_sink *sink, const dsm_ray *rays, uint32_t ray_count);
 dsm_result sink_surface(dsm_sink *sink, uint32_t ray, double depth, const double transmittance[3]);
 dsm_result sink_span(dsm_sink *sink, uint32_t ray, double front, double back, const double transmittance[3]);
 dsm_result sink_mark(dsm_sink *sink, uint32_t ray);
-/* Sorts events by ray, then by front depth; equal depths keep the host's order. O(n log n). */
+/* Sorts events by ray, then by front depth; equal depths keep the host's order. O(n log n), and O(n) with no copy
+ * where the host has reported them so. */
 dsm_result sink_order(dsm_sink *sink);
 void sink_free(dsm_sink *sink);
 

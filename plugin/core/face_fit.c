@@ -5,15 +5,50 @@
 #include <string.h>
 
 #include "core/box_outline.h"
+#include "core/footprint.h"
 
 static const double COS_WIDEST = 0.5;   /* 60 degrees: beyond, a perspective pixel at the rim is 1/8 as
                                            large as one in the middle, and a cube serves better */
+
+/* What a fit is made for. */
+typedef struct {
+  const dsm_light *light;
+  const dsm_box *bounds;        /* one more box to be held, or NULL */
+  const uint32_t *resolution;
+  uint32_t margin;              /* pixels on each side of a face */
+} wish;
 
 /* Pixels on each side that see no caster. One whole pixel must lie between the casters' outline and the
  * centre of the outermost pixel's filter support. */
 static uint32_t margin_pixels(double filter_width)
 {
   return (uint32_t)ceil(0.5 * filter_width + 0.5);
+}
+
+/* Beyond the edge of a single face all is lit, but beyond that of a cube's face lies the next one. What a wide look-up
+ * reads there has to be in the face's own margin. */
+static uint32_t cube_margin(const dsm_settings *settings)
+{
+  double reach = footprint_reach(blur_level(settings), 0);
+  return margin_pixels(settings->filter_width) + (uint32_t)ceil(reach - 1.5);
+}
+
+uint32_t blur_level(const dsm_settings *settings)
+{
+  double width = blur_pixels(settings);
+  spread region = spread_of_square(width);
+  footprint f = footprint_of(&region, MAX_LEVELS - 1, 0);
+  return f.coarser > 0 ? f.level + 1 : f.level;
+}
+
+static uint64_t box_count(const wish *w)
+{
+  return w->light->caster_count + (w->bounds != NULL);
+}
+
+static const dsm_box *box_at(const wish *w, uint64_t i)
+{
+  return i < w->light->caster_count ? &w->light->casters[i] : w->bounds;
 }
 
 static uint32_t inner_pixels(uint32_t resolution, uint32_t margin)
@@ -55,12 +90,11 @@ static void pixel_size(const uint32_t resolution[2], uint32_t margin, double acr
     size[0] = size[1] = fmax(fmax(across, up) / inner_pixels(resolution[0], margin), least);
 }
 
-static outline outline_of(const dsm_light *light, const projection *p, const frame *axes,
-                          const rectangle *window)
+static outline outline_of(const wish *w, const projection *p, const frame *axes, const rectangle *window)
 {
   outline sum = OUTLINE_EMPTY;
-  for (uint64_t i = 0; i < light->caster_count; i++)
-    outline_add(&sum, p->origin, axes, p->perspective, window, &light->casters[i]);
+  for (uint64_t i = 0; i < box_count(w); i++)
+    outline_add(&sum, p->origin, axes, p->perspective, window, box_at(w, i));
   return sum;
 }
 
@@ -75,32 +109,31 @@ static void clamp_to(rectangle *a, const rectangle *w)
 
 /* Casters just outside the window reach into it through the filter: they are looked for in the window widened
  * by the margin at its largest. */
-static outline outline_near(const dsm_light *light, const projection *p, const frame *axes,
-                            const rectangle *window, const uint32_t resolution[2], uint32_t margin)
+static outline outline_near(const wish *w, const projection *p, const frame *axes, const rectangle *window)
 {
   double size[2];
-  pixel_size(resolution, margin, window->u1 - window->u0, window->v1 - window->v0, 0, size);
+  uint32_t margin = w->margin;
+  pixel_size(w->resolution, margin, window->u1 - window->u0, window->v1 - window->v0, 0, size);
   rectangle wide = {window->u0 - margin * size[0], window->v0 - margin * size[1],
                     window->u1 + margin * size[0], window->v1 + margin * size[1]};
-  outline seen = outline_of(light, p, axes, &wide);
+  outline seen = outline_of(w, p, axes, &wide);
   clamp_to(&seen.area, window);
   return seen;
 }
 
-static void fit_one(const dsm_light *light, projection *p, const rectangle *window,
-                    const uint32_t resolution[2], uint32_t margin)
+static void fit_one(const wish *w, projection *p, const rectangle *window)
 {
   face *f = &p->faces[0];
   f->axes = p->axes;
   p->count = 1;
-  outline seen = outline_near(light, p, &p->axes, window, resolution, margin);
+  outline seen = outline_near(w, p, &p->axes, window);
   if (!(seen.near_depth <= seen.far_depth))
     return;
   const rectangle *a = &seen.area;
   double reach = fmax(fmax(fabs(a->u0), fabs(a->u1)), fmax(fabs(a->v0), fabs(a->v1)));
   double size[2];
-  pixel_size(resolution, margin, a->u1 - a->u0, a->v1 - a->v0, 1e-14 * reach + 1e-30, size);
-  lay_grid(f, &seen, margin, size[0], size[1]);
+  pixel_size(w->resolution, w->margin, a->u1 - a->u0, a->v1 - a->v0, 1e-14 * reach + 1e-30, size);
+  lay_grid(f, &seen, w->margin, size[0], size[1]);
 }
 
 static void negate(double a[3])
@@ -132,8 +165,7 @@ static frame cube_axes(const frame *base, int index)
 /* All faces of a cube have pixels of one size, so that shadows keep their softness across edges; the largest
  * face has the resolution asked for. `half` is set for spotlights up to 90 degrees, which leave the back
  * dark. */
-static void fit_cube(const dsm_light *light, projection *p, int half, const uint32_t resolution[2],
-                     uint32_t margin)
+static void fit_cube(const wish *w, projection *p, int half)
 {
   outline seen[MAX_FACES];
   double across = 0, up = 0;
@@ -153,32 +185,33 @@ static void fit_cube(const dsm_light *light, projection *p, int half, const uint
         along += p->axes.forward[k] * (i < 4 ? f->axes.right[k] : f->axes.up[k]);
       *(along > 0 ? low : high) = 0;
     }
-    seen[i] = outline_near(light, p, &f->axes, &window, resolution, margin);
+    seen[i] = outline_near(w, p, &f->axes, &window);
     if (seen[i].near_depth <= seen[i].far_depth) {
       across = fmax(across, seen[i].area.u1 - seen[i].area.u0);
       up = fmax(up, seen[i].area.v1 - seen[i].area.v0);
     }
   }
   double size[2];
-  pixel_size(resolution, margin, across, up, 1e-9, size);
+  pixel_size(w->resolution, w->margin, across, up, 1e-9, size);
   p->overlap = 0.5 * fmin(1, fmin(size[0], size[1]));
   for (int i = 0; i < MAX_FACES; i++)
     if (seen[i].near_depth <= seen[i].far_depth)
-      lay_grid(&p->faces[i], &seen[i], margin, size[0], size[1]);
+      lay_grid(&p->faces[i], &seen[i], w->margin, size[0], size[1]);
 }
 
 /* The direction of the middle of all casters, and whether they all lie within 60 degrees of it. */
-static int narrow_view(const dsm_light *light, double direction[3])
+static int narrow_view(const wish *w, double direction[3])
 {
+  const double *origin = w->light->origin;
   double low[3], high[3], length = 0;
   for (int i = 0; i < 3; i++) {
     low[i] = INFINITY;
     high[i] = -INFINITY;
-    for (uint64_t k = 0; k < light->caster_count; k++) {
-      low[i] = fmin(low[i], light->casters[k].low[i]);
-      high[i] = fmax(high[i], light->casters[k].high[i]);
+    for (uint64_t k = 0; k < box_count(w); k++) {
+      low[i] = fmin(low[i], box_at(w, k)->low[i]);
+      high[i] = fmax(high[i], box_at(w, k)->high[i]);
     }
-    direction[i] = 0.5 * (low[i] - light->origin[i]) + 0.5 * (high[i] - light->origin[i]);
+    direction[i] = 0.5 * (low[i] - origin[i]) + 0.5 * (high[i] - origin[i]);
     length += direction[i] * direction[i];
   }
   length = sqrt(length);
@@ -187,12 +220,12 @@ static int narrow_view(const dsm_light *light, double direction[3])
   for (int i = 0; i < 3; i++)
     direction[i] /= length;
   /* a cone of less than 90 degrees is convex: it holds a box if it holds the corners */
-  for (uint64_t k = 0; k < light->caster_count; k++)
+  for (uint64_t k = 0; k < box_count(w); k++)
     for (int corner = 0; corner < 8; corner++) {
-      const dsm_box *box = &light->casters[k];
+      const dsm_box *box = box_at(w, k);
       double along = 0, square = 0;
       for (int i = 0; i < 3; i++) {
-        double q = ((corner >> i & 1) ? box->high[i] : box->low[i]) - light->origin[i];
+        double q = ((corner >> i & 1) ? box->high[i] : box->low[i]) - origin[i];
         along += q * direction[i];
         square += q * q;
       }
@@ -202,40 +235,50 @@ static int narrow_view(const dsm_light *light, double direction[3])
   return 1;
 }
 
-void face_fit(const dsm_light *light, const uint32_t resolution[2], double filter_width, projection *out)
+static void fit_light(wish *w, const dsm_settings *settings, projection *out)
 {
   static const double ahead[3] = {0, 0, 1};
-  uint32_t margin = margin_pixels(filter_width);
+  const dsm_light *light = w->light;
+  int half = 0;
   double forward[3];
+  if (light->kind == DSM_LIGHT_PARALLEL) {
+    double r = light->radius > 0 ? light->radius : INFINITY;
+    rectangle window = {-r, -r, r, r};
+    out->axes = frame_along(light->direction);
+    fit_one(w, out, &window);
+    return;
+  }
+  if (light->kind == DSM_LIGHT_SPOT) {
+    double c = light->cos_angle, t = sqrt(fmax(0, 1 - c * c)) / fmax(c, 1e-300);
+    rectangle window = {-t, -t, t, t};
+    out->axes = frame_along(light->direction);
+    if (c >= COS_WIDEST) {
+      fit_one(w, out, &window);
+      return;
+    }
+    half = c >= 0;
+  }
+  else if (narrow_view(w, forward)) {
+    const double t = 2;   /* above tan 60 degrees: all casters are inside */
+    rectangle window = {-t, -t, t, t};
+    out->axes = frame_along(forward);
+    fit_one(w, out, &window);
+    return;
+  }
+  else
+    out->axes = frame_along(ahead);
+  w->margin = cube_margin(settings);
+  fit_cube(w, out, half);
+}
+
+void face_fit(const dsm_light *light, const dsm_settings *settings, projection *out)
+{
   memset(out, 0, sizeof *out);
   memcpy(out->origin, light->origin, sizeof out->origin);
   out->perspective = light->kind != DSM_LIGHT_PARALLEL;
   if (light->caster_count == 0)
     return;
-
-  if (light->kind == DSM_LIGHT_PARALLEL) {
-    double r = light->radius > 0 ? light->radius : INFINITY;
-    rectangle window = {-r, -r, r, r};
-    out->axes = frame_along(light->direction);
-    fit_one(light, out, &window, resolution, margin);
-  }
-  else if (light->kind == DSM_LIGHT_SPOT) {
-    double c = light->cos_angle, t = sqrt(fmax(0, 1 - c * c)) / fmax(c, 1e-300);
-    rectangle window = {-t, -t, t, t};
-    out->axes = frame_along(light->direction);
-    if (c >= COS_WIDEST)
-      fit_one(light, out, &window, resolution, margin);
-    else
-      fit_cube(light, out, c >= 0, resolution, margin);
-  }
-  else if (narrow_view(light, forward)) {
-    const double t = 2;   /* above tan 60 degrees: all casters are inside */
-    rectangle window = {-t, -t, t, t};
-    out->axes = frame_along(forward);
-    fit_one(light, out, &window, resolution, margin);
-  }
-  else {
-    out->axes = frame_along(ahead);
-    fit_cube(light, out, 0, resolution, margin);
-  }
+  wish w = {light, settings->bounded ? &settings->bounds : NULL, settings->resolution,
+            margin_pixels(settings->filter_width)};
+  fit_light(&w, settings, out);
 }

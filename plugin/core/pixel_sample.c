@@ -88,11 +88,10 @@ static double filter_inverse(filter_kind kind, double u)
   return 2 * u - 1;
 }
 
-void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, uint32_t index, double offset[2])
+void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, pixel_point point, double offset[2])
 {
-  /* index is reverse_bits of the first dimension, so it needs no reversal before the scrambling */
-  double u = ((double)scramble(index, seed.x) + 0.5) * 0x1p-32;
-  double v = ((double)scramble(reverse_bits(sobol_second(index)), seed.y) + 0.5) * 0x1p-32;
+  double u = ((double)scramble(point.x, seed.x) + 0.5) * 0x1p-32;
+  double v = ((double)scramble(point.y, seed.y) + 0.5) * 0x1p-32;
   offset[0] = 0.5 * filter->width * filter_inverse(filter->kind, u);
   offset[1] = 0.5 * filter->width * filter_inverse(filter->kind, v);
 }
@@ -107,20 +106,20 @@ static uint64_t spread_bits(uint32_t value)   /* a zero between any two bits */
   return (x | x << 1) & 0x5555555555555555u;
 }
 
-static uint64_t morton_code(uint32_t index)
+static uint64_t morton_code(const pixel_point *p)
 {
-  return spread_bits(reverse_bits(index)) << 1 | spread_bits(sobol_second(index));
+  return spread_bits(reverse_bits(p->x)) << 1 | spread_bits(reverse_bits(p->y));
 }
 
 static int compare_places(const void *a, const void *b)
 {
-  uint64_t x = morton_code(*(const uint32_t *)a), y = morton_code(*(const uint32_t *)b);
+  uint64_t x = morton_code(a), y = morton_code(b);
   return (x > y) - (x < y);
 }
 
-void pixel_sample_path(uint32_t count, uint32_t *order)
+void pixel_sample_path(uint32_t count, pixel_point *path)
 {
-  for (uint32_t i = 0; i < count; i++)
-    order[i] = i;
-  qsort(order, count, sizeof *order, compare_places);
+  for (uint32_t i = 0; i < count; i++)   /* the first dimension is the index with its bits reversed */
+    path[i] = (pixel_point){i, reverse_bits(sobol_second(i))};
+  qsort(path, count, sizeof *path, compare_places);
 }

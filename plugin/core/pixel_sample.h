@@ -16,14 +16,15 @@
 
 typedef struct { filter_kind kind; double width; } pixel_filter;   /* full width of the support in map pixels */
 typedef struct { uint32_t x, y; } pixel_seed;
+typedef struct { uint32_t x, y; } pixel_point;   /* of the sequence before scrambling, bits reversed */
+
+/* The first `count` points, in the order of a path through the strata: neighbours share a small dyadic box, in
+ * every pixel, as scrambling maps dyadic boxes to dyadic boxes. Their differences measure a pixel's sampling
+ * error. */
+void pixel_sample_path(uint32_t count, pixel_point *path);
 
 pixel_seed pixel_sample_seed(uint32_t face, uint32_t x, uint32_t y);
-/* Offset of sample `index` from the pixel's centre in map pixels, within ± width/2. */
-void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, uint32_t index, double offset[2]);
-
-/* A permutation of 0 … count-1 that visits the strata along a path: neighbours in it share a small dyadic
- * box, in every pixel, as scrambling maps dyadic boxes to dyadic boxes. Their differences measure a pixel's
- * sampling error. */
-void pixel_sample_path(uint32_t count, uint32_t *order);
+/* Offset of a point from the pixel's centre in map pixels, within ± width/2. */
+void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, pixel_point point, double offset[2]);
 
 #endif

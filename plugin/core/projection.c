@@ -39,15 +39,15 @@ frame frame_along(const double forward[3])
   return f;
 }
 
-/* Whether the face can say anything about pixel coordinates x, y; false for NaN. Half a pixel beyond the grid
- * the bilinear neighbours are all outside. */
-static int touches(const face *f, double x, double y)
+/* Whether the face can say anything about pixel coordinates x, y; false for NaN. */
+static int touches(const face *f, double x, double y, double reach)
 {
-  return x > -0.5 && x < f->width + 0.5 && y > -0.5 && y < f->height + 0.5;
+  return x > -reach && x < f->width + reach && y > -reach && y < f->height + reach;
 }
 
 /* Adds the face's view of the point at q (relative to the origin) unless it lies outside. */
-static uint32_t add_hit(const projection *p, uint32_t index, const double q[3], double weight, projected *hit)
+static uint32_t add_hit(const projection *p, uint32_t index, const double q[3], double weight, double reach,
+                        projected *hit)
 {
   const face *f = &p->faces[index];
   if (f->width == 0)
@@ -62,7 +62,7 @@ static uint32_t add_hit(const projection *p, uint32_t index, const double q[3], 
     v *= nearness;
   }
   double x = (u - f->u0) * f->per_u, y = (v - f->v0) * f->per_v;
-  if (!touches(f, x, y))
+  if (!touches(f, x, y, reach))
     return 0;
   double depth = p->perspective ? sqrt(dot(q, q)) : z;
   if (!(depth > f->near_depth))
@@ -71,7 +71,7 @@ static uint32_t add_hit(const projection *p, uint32_t index, const double q[3], 
   return 1;
 }
 
-static uint32_t find_in_cube(const projection *p, const double q[3], projected hits[3])
+static uint32_t find_in_cube(const projection *p, const double q[3], double reach, projected hits[3])
 {
   const double *axis[3] = {p->axes.forward, p->axes.right, p->axes.up};
   double along[3], size[3];
@@ -85,7 +85,7 @@ static uint32_t find_in_cube(const projection *p, const double q[3], projected h
     double other = fmax(size[(i + 1) % 3], size[(i + 2) % 3]);
     if (other < size[i] * (1 - p->overlap)) {
       uint32_t index = 2 * (uint32_t)i + (along[i] < 0);
-      return add_hit(p, index, q, 1, hits);
+      return add_hit(p, index, q, 1, reach, hits);
     }
     weight[i] = size[i] > 0 ? fmax(0, fmin(1, (1 + p->overlap - other / size[i]) / (2 * p->overlap))) : 0;
     sum += weight[i];
@@ -94,18 +94,18 @@ static uint32_t find_in_cube(const projection *p, const double q[3], projected h
   if (sum > 0)   /* false at the light itself */
     for (uint32_t i = 0; i < 3; i++)
       if (weight[i] > 0)
-        n += add_hit(p, 2 * i + (along[i] < 0), q, weight[i] / sum, hits + n);
+        n += add_hit(p, 2 * i + (along[i] < 0), q, weight[i] / sum, reach, hits + n);
   return n;
 }
 
-uint32_t projection_find(const projection *p, const double point[3], projected hits[3])
+uint32_t projection_find(const projection *p, const double point[3], double reach, projected hits[3])
 {
   double q[3];
   for (int i = 0; i < 3; i++)
     q[i] = point[i] - p->origin[i];
   if (p->count == MAX_FACES)
-    return find_in_cube(p, q, hits);
-  return p->count ? add_hit(p, 0, q, 1, hits) : 0;
+    return find_in_cube(p, q, reach, hits);
+  return p->count ? add_hit(p, 0, q, 1, reach, hits) : 0;
 }
 
 void projection_ray(const projection *p, uint32_t index, double x, double y, dsm_ray *ray)

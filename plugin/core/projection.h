@@ -29,6 +29,22 @@ typedef struct {
 } face;
 
 #define MAX_FACES 6
+#define MAX_LEVELS 16   /* of 16384 pixels and some margin */
+
+/* Pixels of a coarser level along a side that has `pixels` of the finest: each covers 2^level of those, the last one less
+ * where it does not divide. A face has levels down to a single pixel. */
+static inline uint32_t level_pixels(uint32_t pixels, uint32_t level)
+{
+  return (uint32_t)(((uint64_t)pixels + (1ull << level) - 1) >> level);
+}
+
+static inline uint32_t face_levels(const face *f)
+{
+  uint32_t longer = f->width > f->height ? f->width : f->height, levels = longer > 0;
+  while (levels && level_pixels(longer, levels - 1) > 1)
+    levels++;
+  return levels;
+}
 
 typedef struct {
   double origin[3];
@@ -43,14 +59,15 @@ typedef struct {
 typedef struct {
   uint32_t face;
   double weight;         /* of this face's answer; they add up to 1 */
-  double x, y;           /* pixel coordinates, at most half a pixel outside the face */
+  double x, y;           /* pixel coordinates, at most `reach` outside the face */
   double depth;
   double u, v;
 } projected;
 
-/* Fills `hits` with the faces that answer for `point`; `hits[i].face` with zero pixels or x, y outside are
- * left out, so that the weights may add up to less than 1: the rest is lit. 0: lit. */
-uint32_t projection_find(const projection *p, const double point[3], projected hits[3]);
+/* Fills `hits` with the faces that answer for `point`; those with zero pixels are left out, and those from which it lies
+ * outside by more than `reach` pixels (1/2 for a bilinear look-up), so that the weights may add up to less than 1: the
+ * rest is lit. 0: lit. */
+uint32_t projection_find(const projection *p, const double point[3], double reach, projected hits[3]);
 
 /* The light ray through pixel coordinates x, y of a face that has pixels. */
 void projection_ray(const projection *p, uint32_t face, double x, double y, dsm_ray *ray);

@@ -28,12 +28,12 @@ static receiver_plane if_edge_on(receiver_plane plane)
   return plane;
 }
 
-receiver_plane receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound, double half,
-                                   double bias)
+receiver_plane receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound,
+                                   const receiver_region *region, double bias)
 {
   receiver_plane plane = {0, 0, 0, 0, 0, 0};
   const face *f = &p->faces[at->face];
-  const double *normal = bound->normal;
+  const double *normal = bound->normal, half = region->half;
   if (bias >= 0) {
     plane.constant = bias;
     return plane;
@@ -56,7 +56,7 @@ receiver_plane receiver_plane_seen(const projection *p, const projected *at, con
   double m = nu * at->u + nv * at->v + nz, g = m / len;
   plane.slope_u = quotient((nu - m * at->u / len2) / len * f->pixel_u, g);
   plane.slope_v = quotient((nv - m * at->v / len2) / len * f->pixel_v, g);
-  double pixel = fmax(f->pixel_u, f->pixel_v), far_corner = 1 + half;
+  double pixel = fmax(f->pixel_u, f->pixel_v), far_corner = region->farthest + half;
   double slope = half * (fabs(plane.slope_u) + fabs(plane.slope_v));
   double curve = quotient(0.5 * pixel * pixel * 2 * far_corner * far_corner, fabs(g));
   plane.reach = slope + curve;

@@ -13,8 +13,8 @@
 
 #include "core/projection.h"
 
-/* One of the receiver's planes as one face sees it around one point, for pixels at most one away from the
- * point in each direction. Computed once a face and look-up. */
+/* One of the receiver's planes as one face sees it around one point, for the pixels of one level. Computed once a face, level
+ * and look-up. All pixels are those of the finest level. */
 typedef struct {
   double slope_u, slope_v;   /* perspective: growth of the plane's nearness (1/depth) relative to that at the point, a
                                 pixel; orthographic: growth of nearness (-depth) a pixel */
@@ -25,10 +25,12 @@ typedef struct {
   double constant;           /* scene units added to the plane's own share */
 } receiver_plane;
 
-/* `half` is half the width of a pixel's footprint in pixels. `bias` is the settings': scene units in place of what the
- * plane tells, or SETTING_AUTOMATIC. */
-receiver_plane receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound, double half,
-                                   double bias);
+/* How far around its centre a pixel has seen the scene, and how far from the point pixels are read, in each direction. */
+typedef struct { double half, farthest; } receiver_region;
+
+/* `bias` is the settings': scene units in place of what the plane tells, or SETTING_AUTOMATIC. */
+receiver_plane receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound,
+                                   const receiver_region *region, double bias);
 
 /* A rise of nearness in scene units toward the light. Nearness 1 + rise means depth / (1 + rise). */
 static inline double receiver_units(const receiver_plane *plane, double rise)

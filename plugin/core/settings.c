@@ -17,8 +17,18 @@ const dsm_parameter settings_table[WORD_COUNT] = {
     "largest error of visibility, at any depth, that compression may add"},
   [WORD_FILTER] = {"filter", DSM_CHOICE, 0, 1, 0, 0, 16, 1, 0, "box triangle gaussian", "\"box\", 1",
     "filter of a map pixel and its full width in map pixels"},
+  [WORD_BLUR] = {"blur", DSM_NUMBERS, 1, 1, 0, 0, 1, 0, 0, NULL, "0",
+    "width of an extra filter of the look-up, as a share of the map"},
   [WORD_BIAS] = {"bias", DSM_NUMBERS, 1, 1, 0, 0, DBL_MAX, 0, 0, NULL, "automatic",
     "scene units by which a surface is moved toward the light before its shadow is looked up"},
+  [WORD_BOUNDS] = {"bounds", DSM_NUMBERS, 6, 6, 0, -1e150, 1e150, 0, 0, NULL, "none",
+    "two corners of a box that the map holds in any case: maps of moving objects then share one frame"},
+  [WORD_SAVE_FILE] = {"save_file", DSM_TEXT, 0, 0, 0, 0, 0, 0, 0, NULL, "none",
+    "bake the whole map first, and write it to this file"},
+  [WORD_LOAD_FILE] = {"load_file", DSM_TEXT, 0, 0, 0, 0, 0, 0, 0, NULL, "none",
+    "read the map from this file instead of baking it"},
+  [WORD_CACHE] = {"cache", DSM_NUMBERS, 1, 1, 0, 0, 1e9, 1, 0, NULL, "1024",
+    "megabytes that the map's tiles may hold in memory"},
 };
 
 /* Widths in map pixels where a scene names a filter without one: a box tiles the map, the others overlap by
@@ -28,7 +38,8 @@ static const double default_width[] = { [FILTER_BOX] = 1, [FILTER_TRIANGLE] = 2,
 void settings_defaults(dsm_settings *settings)
 {
   *settings = (dsm_settings){ .resolution = {512, 0}, .samples = 16, .tolerance = SETTING_AUTOMATIC,
-    .filter = FILTER_BOX, .filter_width = default_width[FILTER_BOX], .bias = SETTING_AUTOMATIC };
+    .filter = FILTER_BOX, .filter_width = default_width[FILTER_BOX], .bias = SETTING_AUTOMATIC,
+    .cache = 1024 };
 }
 
 dsm_settings *settings_create(void)
@@ -41,7 +52,23 @@ dsm_settings *settings_create(void)
 
 void settings_destroy(dsm_settings *settings)
 {
+  if (!settings)
+    return;
+  free(settings->save_file);
+  free(settings->load_file);
   free(settings);
+}
+
+static char **text_of(dsm_settings *settings, uint32_t parameter)
+{
+  return parameter == WORD_SAVE_FILE ? &settings->save_file
+       : parameter == WORD_LOAD_FILE ? &settings->load_file : NULL;
+}
+
+const char *settings_text(const dsm_settings *settings, uint32_t parameter)
+{
+  char **text = settings ? text_of((dsm_settings *)(size_t)settings, parameter) : NULL;
+  return text ? *text : NULL;
 }
 
 typedef struct { char *text; uint64_t size, used; } sentence;
@@ -78,6 +105,10 @@ static void say_range(sentence *s, const dsm_parameter *row)
 static void say_takes(sentence *s, const dsm_parameter *row)
 {
   say(s, "'%s' takes ", row->name);
+  if (row->type == DSM_TEXT) {
+    say(s, "the name of a file.");
+    return;
+  }
   if (row->type == DSM_CHOICE) {
     say(s, "one of the words %s", row->choices);
     if (row->max_count == 0) {
@@ -115,6 +146,12 @@ static int in_range(const dsm_parameter *row, double x)
 static dsm_result check(const dsm_parameter *row, const char *word, const double *numbers, uint32_t count,
                         int *chosen, sentence *why)
 {
+  if (row->type == DSM_TEXT) {
+    if (word && *word && count == 0)
+      return DSM_OK;
+    say_takes(why, row);
+    return DSM_INVALID;
+  }
   if (row->type == DSM_CHOICE) {
     *chosen = word ? choice_index(row->choices, word) : -1;
     if (*chosen < 0) {
@@ -141,6 +178,28 @@ static dsm_result check(const dsm_parameter *row, const char *word, const double
       return DSM_INVALID;
     }
   return DSM_OK;
+}
+
+static dsm_result set_text(char **text, const char *word, sentence *why)
+{
+  char *copy = strdup(word);
+  if (!copy) {
+    say(why, "There is no memory for the name of a file.");
+    return DSM_NO_MEMORY;
+  }
+  free(*text);
+  *text = copy;
+  return DSM_OK;
+}
+
+static dsm_box box_between(const double corners[6])
+{
+  dsm_box b;
+  for (int i = 0; i < 3; i++) {
+    b.low[i] = fmin(corners[i], corners[3 + i]);
+    b.high[i] = fmax(corners[i], corners[3 + i]);
+  }
+  return b;
 }
 
 dsm_result settings_set(dsm_settings *settings, uint32_t parameter, const char *choice, const double *numbers,
@@ -172,9 +231,22 @@ dsm_result settings_set(dsm_settings *settings, uint32_t parameter, const char *
       settings->filter = (filter_kind)chosen;
       settings->filter_width = count ? numbers[0] : default_width[chosen];
       break;
+    case WORD_BLUR:
+      settings->blur = numbers[0];
+      break;
     case WORD_BIAS:
       settings->bias = numbers[0];
       break;
+    case WORD_BOUNDS:
+      settings->bounded = 1;
+      settings->bounds = box_between(numbers);
+      break;
+    case WORD_CACHE:
+      settings->cache = numbers[0];
+      break;
+    case WORD_SAVE_FILE:
+    case WORD_LOAD_FILE:
+      return set_text(text_of(settings, parameter), choice, &why);
   }
   return DSM_OK;
 }

@@ -10,7 +10,6 @@
 
 #include <stdlib.h>
 
-#define GONE 1e-12         /* less light than this in a channel is none */
 #define BLACK_DEPTH 745.0  /* a span of transmittance 0: the gentlest exponential that doubles take for 0 */
 #define SHORTEST 1e-290    /* a span shorter than this is a step: its rate of extinction would overflow */
 
@@ -26,7 +25,7 @@ static int is_step(const event *e) { return !(e->back - e->front > SHORTEST); }
 
 static rgb without_traces(rgb v) {
   for (int c = 0; c < 3; ++c)
-    if (v.c[c] < GONE) v.c[c] = 0;
+    if (v.c[c] < TRANSMITTANCE_GONE) v.c[c] = 0;
   return v;
 }
 
@@ -46,7 +45,7 @@ static dsm_result put(builder *b, double z, rgb v) {
 
 static dsm_result step(builder *b, double z, rgb transmittance) {
   rgb before = b->v;
-  b->v = without_traces(rgb_mul(before, transmittance));
+  for (int c = 0; c < 3; ++c) b->v.c[c] = transmittance_behind(before.c[c], transmittance.c[c]);
   if (same(before, b->v)) return DSM_OK;
   dsm_result result = put(b, z, before);
   return result ? result : put(b, z, b->v);
@@ -89,11 +88,11 @@ static double stride(const builder *b, rgb v, rgb depth) {
   return shortest;
 }
 
-/* Where the last light goes: the share of the way from z0 to z1 after which all channels are below GONE. */
+/* Where the last light goes: the share of the way from z0 to z1 after which no channel has any. */
 static double end_of_light(rgb from, rgb depth) {
   double end = 0;
   for (int c = 0; c < 3; ++c)
-    if (from.c[c] > GONE) end = fmax(end, log(from.c[c] / GONE) / depth.c[c]);
+    if (from.c[c] > TRANSMITTANCE_GONE) end = fmax(end, log(from.c[c] / TRANSMITTANCE_GONE) / depth.c[c]);
   return fmin(end, 1);
 }
 

@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 #include "map/lookup.h"
 
+#include "core/footprint.h"
 #include "core/receiver_depth.h"
 
 /* One face's view of the receiver, and what it takes from the light. */
 typedef struct {
   dsm_worker *worker;
+  const dsm_receiver *receiver;
   const projected *at;
   receiver_plane planes[2];
   uint32_t plane_count;   /* 0: read at the point's own depth */
   int automatic;          /* bias */
   double own_rounding;    /* of the receiver's depth itself */
-  rgb lost;               /* share of light that does not arrive, weighted */
+  double lost_grey;       /* share of light that does not arrive, weighted: in pixels without colour */
+  rgb lost;               /* and in those with colour */
 } view;
 
 /* How much of the light that a pixel lets through in front of a surface its own slope may take away in the
@@ -21,122 +24,241 @@ static const double CONTACT = 0.5;
 /* Less light than this is not worth a ray. */
 static const double UNSEEN = 1e-3;
 
+/* The coarsest level that a camera ray's footprint may ask for: beyond, an image pixel covers hundreds of map pixels, and
+ * a smaller map would do. */
+enum { FOOTPRINT_LEVEL = 5 };
+
 /* Reads a pixel in front of where the receiver's own surface can be. Every plane bounds the surface by itself, so the
- * one that asks for the least bias is enough.
+ * one that asks for the least bias is enough. du, dv: from the point to the pixel's centre.
  *
  *       light         The bias steps over what lies within it: also over an edge that touches the surface, and light
  *         |           would leak in along the contact. But the surface alone leaves most of the light in the
  *   1 ----+---.       middle of its range of depths (o). Where less is left there, an occluder is so near that the map
  *         |    `.o    cannot tell the two apart, and says so. */
-static inline dsm_result read_pixel(view *v, const tile *t, const visibility *function, double du, double dv,
-                                    uint32_t *hint, rgb *seen)
+static dsm_result add_surface(view *v, const tile *t, const visibility *function, double du, double dv,
+                              uint32_t *hint, double weight)
 {
-  double z = v->at->depth - t->near_depth;
-  if (!v->plane_count) {
-    *seen = visibility_at(function, z, hint);
-    return DSM_OK;
-  }
-  z -= t->depth_rounding + v->own_rounding;
+  double z = v->at->depth - t->near_depth - t->depth_rounding - v->own_rounding;
   double tangent = receiver_bias(&v->planes[0], du, dv);
   double other = v->plane_count > 1 ? receiver_bias(&v->planes[1], du, dv) : tangent;
-  *seen = visibility_at(function, z - (tangent < other ? tangent : other), hint);
-  if (!v->automatic || tangent > other || seen->c[0] + seen->c[1] + seen->c[2] <= 2 * UNSEEN)
-    return DSM_OK;
-  rgb middle = visibility_at(function, z - receiver_middle(&v->planes[0], du, dv), hint);
-  for (int c = 0; c < 3; c++)
-    if (middle.c[c] < CONTACT * seen->c[c] - UNSEEN)
+  visibility_place front = {0, 0, 0}, middle = {0, 0, 0};
+  int dims = visibility_find(function, z - (tangent < other ? tangent : other), hint, &front);
+  int in_doubt = v->automatic && tangent <= other
+              && visibility_find(function, z - receiver_middle(&v->planes[0], du, dv), hint, &middle);
+  for (uint32_t c = 0; c < function->channels; c++) {
+    double seen = dims ? visibility_value(function, &front, c) : 1;
+    if (in_doubt && visibility_value(function, &middle, c) < CONTACT * seen - UNSEEN)
       return DSM_TRACE;
-  return DSM_OK;
-}
-
-/* Adds what pixel (x, y), which lies in tile t, takes away. `weight` is its bilinear weight times the
- * face's. */
-static inline dsm_result add_pixel(view *v, const tile *t, uint32_t x, uint32_t y, double weight)
-{
-  if (t->kind != TILE_STORED)
-    return t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
-  const tile_pixel *pixel = &tile_pixels(t)[y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE];
-  if (pixel->word == 0)
-    return DSM_OK;
-  if (pixel->word & PIXEL_MARKED)
-    return DSM_TRACE;
-  visibility function = tile_visibility(t, pixel);
-  uint32_t *hint = &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE];
-  rgb seen;
-  dsm_result result = read_pixel(v, t, &function, x + 0.5 - v->at->x, y + 0.5 - v->at->y, hint, &seen);
-  if (result != DSM_OK)
-    return result;
-  for (int c = 0; c < 3; c++)
-    v->lost.c[c] += weight * (1 - seen.c[c]);
-  return DSM_OK;
-}
-
-/* The bilinear average over the 2 x 2 pixels whose centres surround the point; those outside the face are
- * lit. */
-static dsm_result add_face(view *v)
-{
-  const face *f = &v->worker->map->projection.faces[v->at->face];
-  double x = v->at->x - 0.5, y = v->at->y - 0.5;   /* from -1 to width and height, see projection.c */
-  int32_t i = (int32_t)(x + 1) - 1, j = (int32_t)(y + 1) - 1;   /* rounded down */
-  double across = x - i, up = y - j;
-  const tile *t = NULL;
-  tile_key key = {v->at->face, 0, 0, 0};
-  for (int k = 0; k < 4; k++) {
-    int32_t px = i + (k & 1), py = j + (k >> 1);
-    double weight = v->at->weight * (k & 1 ? across : 1 - across) * (k >> 1 ? up : 1 - up);
-    if (!(weight > 0) || px < 0 || py < 0 || px >= (int32_t)f->width || py >= (int32_t)f->height)
-      continue;
-    uint32_t tile_x = (uint32_t)px / TILE_SIDE, tile_y = (uint32_t)py / TILE_SIDE;
-    dsm_result result = DSM_OK;
-    if (!t || tile_x != key.x || tile_y != key.y) {   /* mostly all four are in one */
-      key.x = tile_x;
-      key.y = tile_y;
-      result = worker_tile(v->worker, &key, &t);
-    }
-    if (result == DSM_OK)
-      result = add_pixel(v, t, (uint32_t)px, (uint32_t)py, weight);
-    if (result != DSM_OK)
-      return result;
+    *(function->channels == 1 ? &v->lost_grey : &v->lost.c[c]) += weight * (1 - seen);
   }
   return DSM_OK;
+}
+
+/* Adds what a pixel takes away. `place` is that of pixel (x, y) in tile t. */
+static inline dsm_result add_pixel(view *v, const tile *t, uint32_t place, uint32_t x, uint32_t y, double size,
+                                   double weight)
+{
+  if (tile_is_marked(t, place))
+    return DSM_TRACE;
+  visibility function = tile_visibility(t, place);
+  if (function.count == 0)
+    return DSM_OK;
+  uint32_t *hint = &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE];
+  if (v->plane_count)
+    return add_surface(v, t, &function, (x + 0.5) * size - v->at->x, (y + 0.5) * size - v->at->y, hint, weight);
+  visibility_place at;
+  if (!visibility_find(&function, v->at->depth - t->near_depth, hint, &at))
+    return DSM_OK;
+  if (function.channels == 1)
+    v->lost_grey += weight * (1 - visibility_value(&function, &at, 0));
+  else
+    for (uint32_t c = 0; c < 3; c++)
+      v->lost.c[c] += weight * (1 - visibility_value(&function, &at, c));
+  return DSM_OK;
+}
+
+/* Four pixels of one tile, the first of them (x, y). Both rows are sent for before the first is read. */
+static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, uint32_t y, double size,
+                                    const double weight[4])
+{
+  const tile *t;
+  dsm_result result = worker_tile(v->worker, key, &t);
+  if (result != DSM_OK || t->kind != TILE_STORED)
+    return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
+  uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
+  const float *words = (const float *)(const void *)((const char *)t + t->words);
+  __builtin_prefetch(words + tile_first(t, place));
+  __builtin_prefetch(words + tile_first(t, place + TILE_SIDE));
+  result = add_pixel(v, t, place, x, y, size, weight[0]);
+  if (result == DSM_OK)
+    result = add_pixel(v, t, place + 1, x + 1, y, size, weight[1]);
+  if (result == DSM_OK)
+    result = add_pixel(v, t, place + TILE_SIDE, x, y + 1, size, weight[2]);
+  return result == DSM_OK ? add_pixel(v, t, place + TILE_SIDE + 1, x + 1, y + 1, size, weight[3]) : result;
+}
+
+static dsm_result add_apart(view *v, uint32_t level, uint32_t x, uint32_t y, double size, double weight)
+{
+  tile_key key = {v->at->face, level, x / TILE_SIDE, y / TILE_SIDE};
+  const tile *t;
+  dsm_result result = worker_tile(v->worker, &key, &t);
+  if (result != DSM_OK || t->kind != TILE_STORED)
+    return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
+  return add_pixel(v, t, y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE, x, y, size, weight);
+}
+
+/* Rounds down. */
+static inline int32_t below(double x)
+{
+  int32_t i = (int32_t)x;
+  return i - (x < i);
+}
+
+/* The bilinear average over the 2 x 2 pixels of a level whose centres surround x, y (pixels of the finest level); those
+ * outside the face are lit. */
+static dsm_result add_bilinear(view *v, uint32_t level, double x, double y, double share)
+{
+  const face *f = &v->worker->map->projection.faces[v->at->face];
+  uint32_t width = level_pixels(f->width, level), height = level_pixels(f->height, level);
+  double size = (double)(1u << level);
+  if (level > 0) {
+    x /= size;
+    y /= size;
+  }
+  int32_t i = below(x - 0.5), j = below(y - 0.5);
+  double across = x - 0.5 - i, up = share * (y - 0.5 - j);
+  const double weight[4] = {(1 - across) * (share - up), across * (share - up), (1 - across) * up, across * up};
+  uint32_t px = (uint32_t)i, py = (uint32_t)j;   /* huge where they are negative */
+  if (px % TILE_SIDE < TILE_SIDE - 1 && py % TILE_SIDE < TILE_SIDE - 1 && px < width && py < height) {
+    tile_key key = {v->at->face, level, px / TILE_SIDE, py / TILE_SIDE};
+    return add_square(v, &key, px, py, size, weight);   /* what of a tile lies outside is stored as lit */
+  }
+  dsm_result result = DSM_OK;
+  for (uint32_t k = 0; k < 4 && result == DSM_OK; k++)
+    if (px + (k & 1) < width && py + (k >> 1) < height && weight[k] > 0)
+      result = add_apart(v, level, px + (k & 1), py + (k >> 1), size, weight[k]);
+  return result;
+}
+
+/* The planes as the pixels of one level meet them. */
+static void see_planes(view *v, const footprint *f, uint32_t level)
+{
+  const dsm_map *map = v->worker->map;
+  double size = (double)(1u << level), apart = fabs(f->step_x) > fabs(f->step_y) ? fabs(f->step_x) : fabs(f->step_y);
+  receiver_region region = {0.5 * (size - 1) + map->support, size + 0.5 * (f->probes - 1) * apart};
+  for (uint32_t k = 0; k < v->plane_count; k++)
+    v->planes[k] = receiver_plane_seen(&map->projection, v->at, &v->receiver->planes[k], &region, map->settings.bias);
+}
+
+static dsm_result add_level(view *v, const footprint *f, uint32_t level, double share)
+{
+  if (v->plane_count)
+    see_planes(v, f, level);
+  if (f->probes == 1)
+    return add_bilinear(v, level, v->at->x, v->at->y, share);
+  dsm_result result = DSM_OK;
+  for (uint32_t k = 0; k < f->probes && result == DSM_OK; k++) {
+    double along = k - 0.5 * (f->probes - 1);
+    result = add_bilinear(v, level, v->at->x + along * f->step_x, v->at->y + along * f->step_y, share / f->probes);
+  }
+  return result;
+}
+
+static dsm_result add_footprint(view *v, const footprint *f)
+{
+  dsm_result result = add_level(v, f, f->level, v->at->weight * (1 - f->coarser));
+  return result == DSM_OK && f->coarser > 0 ? add_level(v, f, f->level + 1, v->at->weight * f->coarser) : result;
+}
+
+/* What the receiver and the map's blur ask for on this face. */
+static footprint choose(const view *v, int has_footprint)
+{
+  const dsm_map *map = v->worker->map;
+  spread region = spread_of_square(map->blur);
+  uint32_t levels = face_levels(&map->projection.faces[v->at->face]), most = map->blur_level;
+  int alone = map->projection.count == 1;   /* what lies beyond a cube's face is not lit: see face_fit.c */
+  if (has_footprint) {
+    spread_add(&region, &map->projection, v->at, v->receiver->footprint);
+    if (alone && most < FOOTPRINT_LEVEL)
+      most = FOOTPRINT_LEVEL;
+  }
+  return footprint_of(&region, most < levels ? most : levels - 1, alone && has_footprint);
+}
+
+/* Where the region is too wide to tell an occluder from the surface that it touches, or a part of it is marked, a
+ * narrower one may do: the shadow sharpens towards the contact. */
+static dsm_result add_wide(view *v, int has_footprint)
+{
+  footprint f = choose(v, has_footprint);
+  for (;;) {
+    double grey = v->lost_grey;
+    rgb lost = v->lost;
+    dsm_result result = add_footprint(v, &f);
+    if (result != DSM_TRACE || (f.level == 0 && f.coarser == 0 && f.probes == 1))
+      return result;
+    v->lost_grey = grey;
+    v->lost = lost;
+    f = (footprint){f.level > 0 ? f.level - 1 : 0, 0, 1, 0, 0};
+  }
 }
 
 /* Zero times a finite number is 0, times anything else NaN. */
 static int all_finite(const dsm_receiver *r)
 {
-  double sum = 0;
-  for (int i = 0; i < 3; i++)
-    sum += r->point[i] * 0;
+  double sum = (r->point[0] + r->point[1] + r->point[2]) * 0;
   for (uint32_t k = 0; k < r->plane_count; k++)
     sum += (r->planes[k].normal[0] + r->planes[k].normal[1] + r->planes[k].normal[2] + r->planes[k].rise) * 0;
+  if (r->has_footprint)
+    for (int i = 0; i < 3; i++)
+      sum += (r->footprint[0][i] + r->footprint[1][i]) * 0;
   return sum == 0;
 }
 
-dsm_result map_lookup(dsm_worker *worker, const dsm_receiver *receiver, double out[3])
+/* How far outside a face a point may lie and still be shadowed by what is in it, finest pixels. */
+static double reach_of(const dsm_map *map, int has_footprint)
 {
-  if (receiver->plane_count > 2 || !all_finite(receiver))
-    return DSM_INVALID;
+  uint32_t level = map->blur_level;
+  if (has_footprint)
+    return footprint_reach(level > FOOTPRINT_LEVEL ? level : FOOTPRINT_LEVEL, 1);
+  return map->blur > 0 ? footprint_reach(level, 0) : 0.5;
+}
+
+static dsm_result look_up(dsm_worker *worker, const dsm_receiver *receiver, double out[3])
+{
+  static const footprint bilinear = {0, 0, 1, 0, 0};
   const dsm_map *map = worker->map;
+  int wide = receiver->has_footprint || map->blur > 0;
   projected hits[3];
-  uint32_t count = projection_find(&map->projection, receiver->point, hits);
+  uint32_t count = projection_find(&map->projection, receiver->point, reach_of(map, receiver->has_footprint != 0), hits);
   view v;
   v.worker = worker;
+  v.receiver = receiver;
+  v.lost_grey = 0;
   v.lost = rgb_grey(0);
   v.plane_count = receiver->plane_count;
   v.automatic = map->settings.bias < 0;
   for (uint32_t i = 0; i < count; i++) {
     v.at = &hits[i];
     v.own_rounding = hits[i].depth * 0x1p-49;   /* some roundings of a double */
-    for (uint32_t k = 0; k < v.plane_count; k++)
-      v.planes[k] = receiver_plane_seen(&map->projection, &hits[i], &receiver->planes[k], map->footprint,
-                                        map->settings.bias);
-    dsm_result result = add_face(&v);
+    dsm_result result = wide ? add_wide(&v, receiver->has_footprint != 0) : add_level(&v, &bilinear, 0, hits[i].weight);
     if (result != DSM_OK)
       return result;
   }
-  /* what is lost is summed, not what is left, so that an unshadowed point is 1 exactly; four weights add up
+  /* what is lost is summed, not what is left, so that an unshadowed point is 1 exactly; the weights add up
    * to 1 but for rounding, and where all is lost nothing may be left of that */
-  for (int c = 0; c < 3; c++)
-    out[c] = v.lost.c[c] < 1 - 1e-15 ? 1 - v.lost.c[c] : 0;
+  for (int c = 0; c < 3; c++) {
+    double lost = v.lost_grey + v.lost.c[c];
+    out[c] = lost < 1 - 1e-14 ? 1 - lost : 0;
+  }
   return count ? DSM_OK : DSM_OUTSIDE;
+}
+
+dsm_result map_lookup(dsm_worker *worker, const dsm_receiver *receiver, double out[3])
+{
+  if (receiver->plane_count > 2 || !all_finite(receiver))
+    return DSM_INVALID;
+  worker_enter(worker);
+  dsm_result result = look_up(worker, receiver, out);
+  worker_leave(worker);
+  return result;
 }

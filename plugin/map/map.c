@@ -12,7 +12,9 @@
 /* A filter's support is enlarged by this before the receiver's plane is searched for its nearest depth:
  * receivers are rarely quite flat, and an eighth of a pixel on each side costs a contact shadow nothing
  * visible. */
-static const double FOOTPRINT_SAFETY = 1.25;
+static const double SUPPORT_SAFETY = 1.25;
+
+static const double MEGABYTE = 1024 * 1024;
 
 static const double LARGEST = 1e150;   /* squares of lengths must stay finite */
 
@@ -81,17 +83,31 @@ dsm_result map_create(const dsm_host *host, const dsm_light *light, const dsm_se
   if (wrong)
     return refuse(host, DSM_INVALID, wrong);
 
+  dsm_settings chosen;
+  settings_defaults(&chosen);
+  if (settings)
+    chosen = *settings;
+  projection faces = {.count = 0};
+  face_fit(&checked, &chosen, &faces);
+  return map_create_framed(host, &checked, &chosen, &faces, out);
+}
+
+dsm_result map_create_framed(const dsm_host *host, const dsm_light *light, const dsm_settings *settings,
+                             const projection *faces, dsm_map **out)
+{
+  *out = NULL;
   dsm_map *map = calloc(1, sizeof *map);
   if (!map)
     return refuse(host, DSM_NO_MEMORY, "There is no memory for a deep shadow map.");
   map->host = *host;
-  if (settings)
-    map->settings = *settings;
-  else
-    settings_defaults(&map->settings);
-  map->footprint = 0.5 * map->settings.filter_width * FOOTPRINT_SAFETY;
-  face_fit(&checked, map->settings.resolution, map->settings.filter_width, &map->projection);
-  if (tile_store_create(&map->store, &map->projection) != DSM_OK) {
+  map->light = *light;
+  map->settings = *settings;
+  map->settings.save_file = map->settings.load_file = NULL;   /* the host's business, and not ours to keep */
+  map->support = 0.5 * map->settings.filter_width * SUPPORT_SAFETY;
+  map->blur = blur_pixels(&map->settings);
+  map->blur_level = blur_level(&map->settings);
+  map->projection = *faces;
+  if (tile_store_create(&map->store, &map->projection, (uint64_t)(map->settings.cache * MEGABYTE)) != DSM_OK) {
     free(map);
     return refuse(host, DSM_NO_MEMORY, "There is no memory for the tile table of a deep shadow map.");
   }
@@ -103,38 +119,66 @@ void map_destroy(dsm_map *map)
 {
   if (!map)
     return;
+  if (map->source)
+    map->source->destroy(map->source);
+  if (map->saving)
+    map->saving->destroy(map->saving);
   tile_store_destroy(&map->store);
   free(map);
 }
 
-void map_count_tile(dsm_map *map, const tile_tally *tally, int failed)
+dsm_result map_spool(dsm_map *map, const char *beside)
 {
-  int tell_events = 0, tell_failure = 0;
-  pthread_mutex_lock(&map->store.mutex);
-  tile_tally *sum = &map->tally;
-  sum->pixels += tally->pixels;
-  sum->pixels_marked += tally->pixels_marked;
-  sum->pixels_coloured += tally->pixels_coloured;
+  tile_cache *cache = &map->store.cache;
+  return cache->spool ? DSM_OK : spool_create(beside, cache->count, &cache->spool);
+}
+
+void map_spool_end(dsm_map *map)
+{
+  spool_destroy(map->store.cache.spool);
+  map->store.cache.spool = NULL;
+}
+
+/* Under the mutex. Nonzero: it has happened, and nobody has told the host yet. */
+static int tell_once(int happened, int *told)
+{
+  int tell = happened && !*told;
+  *told |= happened;
+  return tell;
+}
+
+static void add_cost(tile_tally *sum, const tile_tally *tally)
+{
   sum->rays += tally->rays;
   sum->events += tally->events;
   sum->events_dropped += tally->events_dropped;
   sum->events_clamped += tally->events_clamped;
-  sum->vertices_in += tally->vertices_in;
-  sum->vertices += tally->vertices;
-  sum->bytes += tally->bytes;
   sum->bake_seconds += tally->bake_seconds;
   sum->trace_seconds += tally->trace_seconds;
-  if (failed) {
-    map->tiles_failed++;
-    tell_failure = !map->told_failure;
-    map->told_failure = 1;
+}
+
+static void add_content(tile_tally *sum, const tile_tally *tally)
+{
+  sum->pixels += tally->pixels;
+  sum->pixels_marked += tally->pixels_marked;
+  sum->pixels_coloured += tally->pixels_coloured;
+  sum->vertices_in += tally->vertices_in;
+  sum->vertices += tally->vertices;
+}
+
+void map_count_made(dsm_map *map, const tile_key *key, const tile_tally *tally, int failed)
+{
+  const tile_cache *cache = &map->store.cache;
+  pthread_mutex_lock(&map->store.mutex);
+  add_cost(&map->tally, tally);
+  if (!tile_cache_was_made(cache, tile_store_number(&map->store, key))) {
+    add_content(&map->tally, tally);
+    map->tiles_baked += !failed;
+    map->tiles_failed += (uint64_t)failed;
   }
-  else
-    map->tiles_baked++;
-  if (tally->events_dropped || tally->events_clamped) {
-    tell_events = !map->told_bad_events;
-    map->told_bad_events = 1;
-  }
+  int tell_failure = tell_once(failed, &map->told_failure);
+  int tell_events = tell_once(tally->events_dropped || tally->events_clamped, &map->told_bad_events);
+  int tell_full = tell_once(cache->spool && spool_is_full(cache->spool), &map->told_full);
   pthread_mutex_unlock(&map->store.mutex);
 
   if (tell_events) {
@@ -147,6 +191,17 @@ void map_count_tile(dsm_map *map, const tile_tally *tally, int failed)
   if (tell_failure)
     map_report(map, 1, "A tile of a deep shadow map could not be baked (is there too little memory?); shadows "
                "there are ray-traced.");
+  if (tell_full)
+    map_report(map, 1, "The temporary file for what a deep shadow map's cache cannot hold takes no more (is the disk full?); "
+               "parts of the map are baked again when they are needed.");
+}
+
+void map_count_read(dsm_map *map, const tile_key *key, int failed)
+{
+  pthread_mutex_lock(&map->store.mutex);
+  map->tiles_read += !failed;
+  map->tiles_failed += failed && !tile_cache_was_made(&map->store.cache, tile_store_number(&map->store, key));
+  pthread_mutex_unlock(&map->store.mutex);
 }
 
 void map_statistics(const dsm_map *map, dsm_statistics *out)
@@ -155,21 +210,19 @@ void map_statistics(const dsm_map *map, dsm_statistics *out)
   memset(&s, 0, sizeof s);
   const projection *p = &map->projection;
   s.near_depth = INFINITY;
-  s.bytes = sizeof *map;
   for (uint32_t i = 0; i < p->count; i++) {
     const face *f = &p->faces[i];
     if (f->width == 0)
       continue;
-    const tile_grid *grid = &map->store.grids[i];
     s.faces++;
     s.pixels += (uint64_t)f->width * f->height;
-    s.tiles += (uint64_t)grid->across * grid->up;
     s.near_depth = fmin(s.near_depth, f->near_depth);
     s.far_depth = fmax(s.far_depth, f->far_depth);
   }
   if (s.faces == 0)
     s.near_depth = 0;
-  s.bytes += s.tiles * sizeof *map->store.grids[0].slots;
+  s.tiles = map->store.tile_count;
+  uint64_t bookkeeping = sizeof *map + s.tiles * sizeof(tile_slot) + s.tiles / 8;
 
   pthread_mutex_t *mutex = (pthread_mutex_t *)(size_t)&map->store.mutex;   /* const towards the host only */
   pthread_mutex_lock(mutex);
@@ -184,7 +237,10 @@ void map_statistics(const dsm_map *map, dsm_statistics *out)
   s.events_clamped = map->tally.events_clamped;
   s.vertices_in = map->tally.vertices_in;
   s.vertices = map->tally.vertices;
-  s.bytes += map->tally.bytes;
+  s.tiles_read = map->tiles_read;
+  s.tiles_evicted = map->store.cache.evicted;
+  s.bytes = bookkeeping + map->store.cache.bytes;
+  s.bytes_most = bookkeeping + map->store.cache.bytes_most;
   s.bake_seconds = map->tally.bake_seconds;
   s.trace_seconds = map->tally.trace_seconds;
   pthread_mutex_unlock(mutex);

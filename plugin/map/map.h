@@ -7,37 +7,64 @@
 #include "core/settings.h"
 #include "map/tile_store.h"
 
-/* What one baked tile adds to dsm_statistics; see there. */
+/* What one tile that was made adds to dsm_statistics; see there. */
 typedef struct {
   uint64_t pixels, pixels_marked, pixels_coloured;
   uint64_t rays, events, events_dropped, events_clamped;
   uint64_t vertices_in, vertices;
-  uint64_t bytes;
   double bake_seconds, trace_seconds;
 } tile_tally;
 
+/* Where tiles come from that are not baked. */
+typedef struct tile_source {
+  /* [any] DSM_OK: *out is a new tile, or &tile_lit. DSM_REFUSED, DSM_NO_MEMORY: nothing; the source tells the host once. */
+  dsm_result (*read)(struct tile_source *source, const tile_key *key, const tile **out);
+  void (*destroy)(struct tile_source *source);
+} tile_source;
+
+/* What the end of a saving must know of its beginning. */
+typedef struct map_saving {
+  void (*destroy)(struct map_saving *saving);
+} map_saving;
+
 struct dsm_map {
   dsm_host host;
+  dsm_light light;         /* direction of unit length */
   dsm_settings settings;
   projection projection;
-  double footprint;        /* half width of a pixel's filter support, with some safety; map pixels */
+  double support;          /* half width of a pixel's filter support, with some safety; map pixels */
+  double blur;             /* width of the look-up's own filter, map pixels */
+  uint32_t blur_level;     /* the coarsest level that it needs */
   tile_store store;
+  tile_source *source;     /* NULL: tiles are baked; set before the first look-up */
+  map_saving *saving;      /* NULL: the map is not going to be saved */
 
   /* all below under store.mutex */
   tile_tally tally;
-  uint64_t tiles_baked, tiles_failed;
-  int told_bad_events, told_failure;
+  uint64_t tiles_baked, tiles_failed, tiles_read;
+  uint64_t next_tile;      /* see whole_map.h */
+  int told_bad_events, told_failure, told_full;
 };
 
 /* Published; see dsm.h. */
 dsm_result map_create(const dsm_host *host, const dsm_light *light, const dsm_settings *settings,
                       dsm_map **map);
+/* The same with faces that are known already; all is valid, and the host may lack `trace`. */
+dsm_result map_create_framed(const dsm_host *host, const dsm_light *light, const dsm_settings *settings,
+                             const projection *faces, dsm_map **map);
 void map_destroy(dsm_map *map);
 void map_statistics(const dsm_map *map, dsm_statistics *out);
 
-/* Counts a tile that has just been baked, or failed, and tells the host once a map of bad events and of
- * failure. */
-void map_count_tile(dsm_map *map, const tile_tally *tally, int failed);
+/* [one] From now on tiles that are evicted are kept in a temporary file in the folder of `beside`, a path, instead of being made
+ * again. DSM_REFUSED: there can be no such file, and all goes on without. map_spool_end frees the disk again. */
+dsm_result map_spool(dsm_map *map, const char *beside);
+void map_spool_end(dsm_map *map);
+
+/* [any] Count a tile that has just been made or read, or failed to be, before it is published. The first tells the host once a
+ * map of bad events, of failure, and of a full disk. A tile that is made again after its eviction adds to
+ * what making tiles has cost, but not to what the map holds. */
+void map_count_made(dsm_map *map, const tile_key *key, const tile_tally *tally, int failed);
+void map_count_read(dsm_map *map, const tile_key *key, int failed);
 
 void map_report(const dsm_map *map, int32_t severity, const char *sentence);
 

@@ -2,17 +2,21 @@
 /*
  * A tile: 16 x 16 pixels of visibility in one block of memory, immutable once published.
  *
- *   +--------+-----------+-----------+-----+-------------------------------------------------+
- *   | header | pixel 0,0 | pixel 1,0 |  …  | depths of 0,0 | values of 0,0 | depths of 1,0 … |
- *   +--------+-----------+-----------+-----+-------------------------------------------------+
- *              one word pair each: where its floats start, how many vertices, flags
+ *   +--------+---------------------+----------------+-----------------+-----------------------------------------+
+ *   | header | where pixels begin  | which coloured | which marked    | pixel 0: depths, values | pixel 1: … | … |
+ *   +--------+---------------------+----------------+-----------------+-----------------------------------------+
+ *              257 x 16 or 32 bits   256 bits if any  256 bits if any   words of 32 bits
  *
- * Depths are floats relative to the tile's near depth, a double: the nearest vertex of the tile itself, so that
- * a float's 24 bits cover the tile's range of depths and not the light's distance.
+ * A vertex takes 6 bytes, or 10 where it is coloured. Its depth is a float relative to the tile's near depth, a
+ * double: the nearest vertex of the tile itself, so that a float's 24 bits cover the tile's range of depths and not
+ * the light's distance; fewer would widen the bias of every surface. Its visibility is a whole number of 65535ths:
+ * half of that is a 250th of the least automatic tolerance, and compression leaves room for it (VALUE_ROUNDING).
+ * A pixel without vertices takes 2 bytes.
  */
 #ifndef DSM_MAP_TILE_H
 #define DSM_MAP_TILE_H
 
+#include <stdatomic.h>
 #include <stddef.h>
 
 #include "core/visibility.h"
@@ -20,51 +24,96 @@
 #define TILE_SIDE 16
 #define TILE_PIXELS (TILE_SIDE * TILE_SIDE)
 
-/* Names a tile. Level 0 is the finest; coarser levels come with the pyramid. */
+/* Names a tile. Level 0 is the finest. */
 typedef struct {
   uint32_t face, level;
   uint32_t x, y;   /* in tiles */
 } tile_key;
 
-enum {
-  PIXEL_COLOURED = 1u << 31,   /* three values a vertex instead of one */
-  PIXEL_MARKED = 1u << 30,     /* light can grow here: nothing stored, trace the ray */
-  PIXEL_COUNT = PIXEL_MARKED - 1
-};
-
-typedef struct {
-  uint32_t start;   /* index of its first float */
-  uint32_t word;    /* vertex count and flags */
-} tile_pixel;
-
 typedef enum { TILE_STORED, TILE_LIT, TILE_FAILED } tile_kind;
+
+enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4 };   /* what of the optional parts a tile has */
 
 typedef struct {
   double near_depth;      /* scene units from the light */
   double depth_rounding;  /* more than the rounding of a stored depth, scene units */
-  size_t size;            /* bytes of the whole block */
-  uint32_t kind;          /* tile_kind; only TILE_STORED is followed by pixels */
-  uint32_t floats;
+  float tolerance;        /* error of visibility that compression may have added, rms over the pixels that have any */
+  uint32_t size;          /* bytes of the whole block */
+  uint16_t words;         /* offset of the vertices in bytes */
+  uint8_t kind;           /* tile_kind; only TILE_STORED is followed by pixels */
+  uint8_t layout;         /* TILE_WIDE, … */
+  atomic_uchar used;      /* since the cache last looked */
 } tile;
+
+/* What a tile is to hold: pixels in rows, the lowest first. */
+typedef struct {
+  uint32_t count[TILE_PIXELS];             /* vertices; 0: lit */
+  unsigned char coloured[TILE_PIXELS];     /* three values a vertex instead of one */
+  unsigned char marked[TILE_PIXELS];       /* light can grow here: nothing stored, trace the ray */
+} tile_plan;
 
 /* Shared by all tiles without a caster, and by all that could not be baked. */
 extern const tile tile_lit, tile_failed;
 
-static inline const tile_pixel *tile_pixels(const tile *t) { return (const tile_pixel *)(const void *)(t + 1); }
-static inline const float *tile_floats(const tile *t) { return (const float *)(tile_pixels(t) + TILE_PIXELS); }
+/* A tile laid out as planned, vertices zeroed, to be filled through tile_depths and tile_values before anybody else
+ * sees it. NULL: out of memory, or more than 4 GB. */
+tile *tile_create(const tile_plan *plan);
+void tile_destroy(const tile *t);   /* the shared ones may be passed too */
 
-static inline visibility tile_visibility(const tile *t, const tile_pixel *pixel)
+/* The pixel's first word, counted from t->words. `place` is row * TILE_SIDE + column, or TILE_PIXELS: the end. */
+static inline uint32_t tile_first(const tile *t, uint32_t place)
 {
+  const void *table = t + 1;
+  return t->layout & TILE_WIDE ? ((const uint32_t *)table)[place] : ((const uint16_t *)table)[place];
+}
+
+static inline int tile_bit(const tile *t, size_t offset, uint32_t place)
+{
+  return ((const unsigned char *)t)[offset + place / 8] >> place % 8 & 1;
+}
+
+static inline int tile_is_marked(const tile *t, uint32_t place)
+{
+  return t->layout & TILE_MARKED && tile_bit(t, t->words - TILE_PIXELS / 8, place);
+}
+
+static inline int tile_is_coloured(const tile *t, uint32_t place)
+{
+  return t->layout & TILE_COLOURED
+      && tile_bit(t, t->words - (t->layout & TILE_MARKED ? 2 : 1) * (TILE_PIXELS / 8), place);
+}
+
+/* The pixel's vertices; none if it is lit or marked. A pixel of n vertices takes n words of depths and n/2 or 3n/2 words
+ * of values, rounded up; so its number of words tells n. */
+static inline visibility tile_visibility(const tile *t, uint32_t place)
+{
+  uint32_t first, words;
   visibility v;
-  v.count = pixel->word & PIXEL_COUNT;
-  v.channels = pixel->word & PIXEL_COLOURED ? 3 : 1;
-  v.depth = tile_floats(t) + pixel->start;
-  v.value = v.depth + v.count;
+  if (t->layout == 0) {   /* nearly all tiles */
+    const uint16_t *table = (const uint16_t *)(const void *)(t + 1);
+    first = table[place];
+    words = table[place + 1] - first;
+    v.channels = 1;
+  }
+  else {
+    first = tile_first(t, place);
+    words = tile_first(t, place + 1) - first;
+    v.channels = tile_is_coloured(t, place) ? 3 : 1;
+  }
+  v.count = (uint32_t)(v.channels == 1 ? words * 2ull / 3 : words * 2ull / 5);
+  v.depth = (const float *)(const void *)((const char *)t + t->words) + first;
+  v.value = (const uint16_t *)(const void *)(v.depth + v.count);
   return v;
 }
 
-/* NULL: out of memory. Zeroed, with room for `floats`. */
-tile *tile_create(uint32_t floats);
-void tile_destroy(const tile *t);   /* the shared ones may be passed too */
+static inline float *tile_depths(tile *t, uint32_t place)
+{
+  return (float *)(size_t)tile_visibility(t, place).depth;
+}
+
+static inline uint16_t *tile_values(tile *t, uint32_t place)
+{
+  return (uint16_t *)(size_t)tile_visibility(t, place).value;
+}
 
 #endif

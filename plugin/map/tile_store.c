@@ -12,17 +12,6 @@ static uint32_t tiles_for(uint32_t pixels)
   return (pixels + TILE_SIDE - 1) / TILE_SIDE;
 }
 
-static void free_grids(tile_store *store)
-{
-  for (uint32_t i = 0; i < store->grid_count; i++) {
-    tile_grid *grid = &store->grids[i];
-    if (grid->slots)
-      for (size_t k = 0; k < (size_t)grid->across * grid->up; k++)
-        tile_destroy(atomic_load_explicit(&grid->slots[k], memory_order_relaxed));
-    free((void *)grid->slots);
-  }
-}
-
 static int create_locks(tile_store *store)
 {
   pthread_condattr_t attributes;
@@ -39,25 +28,32 @@ static int create_locks(tile_store *store)
   return ok;
 }
 
-dsm_result tile_store_create(tile_store *store, const projection *p)
+static void lay_grid(tile_store *store, const face *f, tile_grid *grid, uint32_t level)
+{
+  grid->first = store->tile_count;
+  if (level >= face_levels(f))
+    return;
+  grid->across = tiles_for(level_pixels(f->width, level));
+  grid->up = tiles_for(level_pixels(f->height, level));
+  store->tile_count += (uint64_t)grid->across * grid->up;
+  if (level >= store->level_count)
+    store->level_count = level + 1;
+}
+
+dsm_result tile_store_create(tile_store *store, const projection *p, uint64_t budget)
 {
   memset(store, 0, sizeof *store);
-  store->grid_count = p->count;
-  for (uint32_t i = 0; i < p->count; i++) {
-    tile_grid *grid = &store->grids[i];
-    grid->across = tiles_for(p->faces[i].width);
-    grid->up = tiles_for(p->faces[i].height);
-    size_t count = (size_t)grid->across * grid->up;
-    if (count == 0)
-      continue;
-    grid->slots = calloc(count, sizeof *grid->slots);   /* all bits zero is NULL on every POSIX system */
-    if (!grid->slots) {
-      free_grids(store);
-      return DSM_NO_MEMORY;
-    }
-  }
+  store->face_count = p->count;
+  for (uint32_t level = 0; level < MAX_LEVELS; level++)
+    for (uint32_t i = 0; i < p->count; i++)
+      lay_grid(store, &p->faces[i], &store->grids[i][level], level);
+  if (tile_cache_create(&store->cache, store->tile_count, budget) != DSM_OK)
+    return DSM_NO_MEMORY;
+  for (uint32_t level = 0; level < MAX_LEVELS; level++)
+    for (uint32_t i = 0; i < p->count; i++)
+      store->grids[i][level].slots = store->cache.slots + store->grids[i][level].first;
   if (!create_locks(store)) {
-    free_grids(store);
+    tile_cache_destroy(&store->cache);
     return DSM_NO_MEMORY;
   }
   return DSM_OK;
@@ -66,9 +62,45 @@ dsm_result tile_store_create(tile_store *store, const projection *p)
 void tile_store_destroy(tile_store *store)
 {
   assert(!store->claims);
-  free_grids(store);
+  tile_cache_destroy(&store->cache);
   pthread_cond_destroy(&store->changed);
   pthread_mutex_destroy(&store->mutex);
+}
+
+dsm_result tile_store_join(tile_store *store, tile_holder *holder)
+{
+  pthread_mutex_lock(&store->mutex);
+  dsm_result result = tile_cache_join(&store->cache, holder);
+  pthread_mutex_unlock(&store->mutex);
+  return result;
+}
+
+void tile_store_leave(tile_store *store, tile_holder *holder)
+{
+  pthread_mutex_lock(&store->mutex);
+  tile_cache_leave(&store->cache, holder);
+  pthread_mutex_unlock(&store->mutex);
+}
+
+uint64_t tile_store_number(const tile_store *store, const tile_key *key)
+{
+  const tile_grid *grid = &store->grids[key->face][key->level];
+  return grid->first + (uint64_t)key->y * grid->across + key->x;
+}
+
+tile_key tile_store_key(const tile_store *store, uint64_t number)
+{
+  tile_key key = {0, 0, 0, 0};
+  for (uint32_t level = 0; level < store->level_count; level++)
+    for (uint32_t i = 0; i < store->face_count; i++) {
+      const tile_grid *grid = &store->grids[i][level];
+      uint64_t within = number - grid->first;
+      if (number >= grid->first && within < (uint64_t)grid->across * grid->up) {
+        key = (tile_key){i, level, (uint32_t)(within % grid->across), (uint32_t)(within / grid->across)};
+        return key;
+      }
+    }
+  return key;
 }
 
 static int same_tile(const tile_key *a, const tile_key *b)
@@ -96,25 +128,33 @@ static void wait_for_change(tile_store *store)
   pthread_cond_timedwait(&store->changed, &store->mutex, &until);
 }
 
-dsm_result tile_store_claim(tile_store *store, const tile_key *key, tile_claim *claim,
+/* Under the mutex. Nonzero: the wait is over, with *out the tile or with the claim. */
+static int try_claim(tile_store *store, const tile_key *key, tile_claim *claim, tile_holder *holder, const tile **out)
+{
+  *out = tile_cache_hold(tile_store_slot(store, key), holder);
+  if (*out)
+    return 1;
+  if (is_claimed(store, key))
+    return 0;
+  claim->key = *key;
+  claim->next = store->claims;
+  store->claims = claim;
+  return 1;
+}
+
+dsm_result tile_store_claim(tile_store *store, const tile_key *key, tile_claim *claim, tile_holder *holder,
                             int32_t (*pause)(void *data), void *data, const tile **out)
 {
+  *out = NULL;
   for (;;) {
     pthread_mutex_lock(&store->mutex);
-    *out = tile_store_peek(store, key);
-    if (*out) {
-      pthread_mutex_unlock(&store->mutex);
-      return DSM_OK;
-    }
-    if (!is_claimed(store, key)) {
-      claim->key = *key;
-      claim->next = store->claims;
-      store->claims = claim;
-      pthread_mutex_unlock(&store->mutex);
-      return DSM_OK;
-    }
-    wait_for_change(store);
+    dsm_result result = tile_holder_make_room(holder);
+    int done = result != DSM_OK || try_claim(store, key, claim, holder, out);
+    if (!done)
+      wait_for_change(store);
     pthread_mutex_unlock(&store->mutex);
+    if (done)
+      return result;
     /* not under the lock: a host may suspend the thread in here for as long as its user likes */
     if (pause && pause(data))
       return DSM_CANCELLED;
@@ -131,11 +171,10 @@ static void end_claim(tile_store *store, tile_claim *claim)
   claim->next = NULL;
 }
 
-void tile_store_publish(tile_store *store, tile_claim *claim, const tile *t)
+void tile_store_publish(tile_store *store, tile_claim *claim, tile_holder *holder, const tile *t)
 {
-  assert(t);
   pthread_mutex_lock(&store->mutex);
-  atomic_store_explicit(tile_store_slot(store, &claim->key), t, memory_order_release);
+  tile_cache_put(&store->cache, tile_store_number(store, &claim->key), t, holder);
   end_claim(store, claim);
   pthread_cond_broadcast(&store->changed);
   pthread_mutex_unlock(&store->mutex);

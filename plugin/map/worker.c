@@ -4,24 +4,68 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "map/pyramid.h"
+
 dsm_result worker_create(dsm_map *map, void *host_data, tile_maker *maker, dsm_worker **out)
 {
+  *out = NULL;
   dsm_worker *worker = calloc(1, sizeof *worker);
-  *out = worker;
   if (!worker)
     return DSM_NO_MEMORY;
   worker->map = map;
   worker->host_data = host_data;
   worker->maker = maker;
-  return DSM_OK;
+  dsm_result result = tile_store_join(&map->store, &worker->holder);
+  if (result == DSM_OK)
+    *out = worker;
+  else
+    free(worker);
+  return result;
 }
 
 void worker_destroy(dsm_worker *worker)
 {
   if (!worker)
     return;
-  worker->maker->destroy(worker->maker);
+  tile_store_leave(&worker->map->store, &worker->holder);
+  if (worker->maker)
+    worker->maker->destroy(worker->maker);
   free(worker);
+}
+
+static dsm_result bake(dsm_worker *worker, const tile_key *key, const tile **out, tile_tally *tally)
+{
+  if (!worker->maker)
+    return DSM_REFUSED;
+  worker->baking = 1;
+  dsm_result result = worker->maker->make(worker->maker, key, out, tally);
+  worker->baking = 0;
+  return result;
+}
+
+/* DSM_OK: *out is the claimed tile, from the best source there is, or &tile_failed. DSM_CANCELLED. */
+static dsm_result make_tile(dsm_worker *worker, const tile_key *key, const tile **out)
+{
+  dsm_map *map = worker->map;
+  const spool *kept = map->store.cache.spool;
+  if (map->source) {
+    int failed = map->source->read(map->source, key, out) != DSM_OK;
+    if (failed)
+      *out = &tile_failed;
+    map_count_read(map, key, failed);
+    return DSM_OK;
+  }
+  if (kept && spool_read(kept, tile_store_number(&map->store, key), out) == DSM_OK && *out)
+    return DSM_OK;
+  tile_tally tally;
+  memset(&tally, 0, sizeof tally);
+  dsm_result result = key->level > 0 ? pyramid_make(worker, key, out) : bake(worker, key, out, &tally);
+  if (result == DSM_CANCELLED)
+    return result;
+  if (result != DSM_OK)
+    *out = &tile_failed;
+  map_count_made(map, key, &tally, (*out)->kind == TILE_FAILED);
+  return DSM_OK;
 }
 
 dsm_result worker_need_tile(dsm_worker *worker, const tile_key *key, const tile **out)
@@ -30,25 +74,20 @@ dsm_result worker_need_tile(dsm_worker *worker, const tile_key *key, const tile 
   *out = NULL;
   if (worker->baking)
     return DSM_TRACE;
-  dsm_result result = tile_store_claim(&map->store, key, &worker->claim, map->host.pause, worker->host_data,
+  tile_claim claim;
+  dsm_result result = tile_store_claim(&map->store, key, &claim, &worker->holder, map->host.pause, worker->host_data,
                                        out);
   if (result != DSM_OK || *out)
     return result;
-
-  tile_tally tally;
-  memset(&tally, 0, sizeof tally);
-  worker->baking = 1;
-  result = worker->maker->make(worker->maker, key, out, &tally);
-  worker->baking = 0;
-  if (result == DSM_CANCELLED) {
-    tile_store_abandon(&map->store, &worker->claim);
-    *out = NULL;
-    return DSM_CANCELLED;
+  uint32_t held = worker->holder.held;
+  const tile *made = NULL;
+  result = make_tile(worker, key, &made);
+  tile_holder_release(&worker->holder, held);   /* what it was made of */
+  if (result == DSM_OK) {
+    tile_store_publish(&map->store, &claim, &worker->holder, made);
+    *out = made;
   }
-  int failed = result != DSM_OK;
-  if (failed)
-    *out = &tile_failed;
-  tile_store_publish(&map->store, &worker->claim, *out);
-  map_count_tile(map, &tally, failed);
-  return DSM_OK;
+  else
+    tile_store_abandon(&map->store, &claim);
+  return result;
 }

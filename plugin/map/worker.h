@@ -20,23 +20,40 @@ typedef struct tile_maker {
 struct dsm_worker {
   dsm_map *map;
   void *host_data;
-  tile_maker *maker;
-  tile_claim claim;
+  tile_maker *maker;   /* NULL: what is in no file has failed */
+  tile_holder holder;
+  uint32_t depth;      /* of worker_enter */
   int baking;          /* a host must not look up with a worker whose tile it traces; it is told to trace */
   uint32_t hints[HINT_SIDE * HINT_SIDE];
 };
 
-/* `maker` belongs to the worker if this returns DSM_OK. */
+/* `maker` belongs to the worker if this returns DSM_OK; it may be NULL. */
 dsm_result worker_create(dsm_map *map, void *host_data, tile_maker *maker, dsm_worker **worker);
 void worker_destroy(dsm_worker *worker);
 
-/* The tile, baked or waited for. DSM_OK, DSM_TRACE (called from within the worker's own bake),
- * DSM_CANCELLED. */
+/* Around every look-up, and whatever else reads tiles. May be nested. */
+static inline void worker_enter(dsm_worker *worker)
+{
+  worker->depth++;
+}
+
+static inline void worker_leave(dsm_worker *worker)
+{
+  assert(worker->depth > 0);
+  if (--worker->depth == 0)
+    worker->holder.held = 0;
+}
+
+/* The tile, made or waited for. DSM_OK, DSM_TRACE (called from within the worker's own bake),
+ * DSM_CANCELLED, DSM_NO_MEMORY. */
 dsm_result worker_need_tile(dsm_worker *worker, const tile_key *key, const tile **out);
 
+/* As above. The tile stays valid until the outermost worker_leave, or, for what is got while a coarser tile is being made
+ * of it, until that is done. */
 static inline dsm_result worker_tile(dsm_worker *worker, const tile_key *key, const tile **out)
 {
-  *out = tile_store_peek(&worker->map->store, key);
+  assert(worker->depth > 0);
+  *out = tile_cache_hold(tile_store_slot(&worker->map->store, key), &worker->holder);
   return *out ? DSM_OK : worker_need_tile(worker, key, out);
 }
 

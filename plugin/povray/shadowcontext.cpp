@@ -22,7 +22,8 @@ ShadowContext::ShadowContext(ShadowMaps& m, ViewData *viewData, ViewThreadData *
 	lookUps(0), rayTraced(0),
 	maps(m),
 	events(viewData->GetSceneData(), threadData, viewData->GetQualityFeatureFlags(), m.Casters()),
-	workers(m.Count())
+	workers(m.Count()),
+	inFile(false)
 {
 	for(size_t i = 0; i < workers.size(); i++)
 	{
@@ -49,15 +50,65 @@ dsm_result ShadowContext::LookUp(size_t map, const dsm_receiver& receiver, doubl
 		return result;
 	rayTraced++;
 
+	PassOnFailure();
+	if(result == DSM_NO_MEMORY)
+		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+	return DSM_TRACE;
+}
+
+void ShadowContext::Load(size_t map, const string& path)
+{
+	inFile = true;
+	Check(ShadowPlugin::Api().load(workers[map].worker, path.c_str()));
+}
+
+void ShadowContext::BeginSave(size_t map, const string& path)
+{
+	inFile = true;
+	Check(ShadowPlugin::Api().save_begin(workers[map].worker, path.c_str()));
+}
+
+void ShadowContext::EndSave(size_t map)
+{
+	inFile = true;
+	Check(ShadowPlugin::Api().save_end(workers[map].worker, &ShadowContext::SaveProgress));
+}
+
+bool ShadowContext::BakeNext(size_t map, double& share)
+{
+	inFile = true;
+	const dsm_result result = ShadowPlugin::Api().bake_next(workers[map].worker, &share);
+	Check(result);
+	return result != DSM_DONE;
+}
+
+bool ShadowContext::Complain(const char *sentence)
+{
+	if(inFile)
+		complaint = sentence;
+	return inFile;
+}
+
+void ShadowContext::PassOnFailure()
+{
 	if(failure)
 	{
 		std::exception_ptr thrown;
 		std::swap(thrown, failure);
 		std::rethrow_exception(thrown);
 	}
+}
+
+/// After a file's call: a render that was to have this map must not go on without it.
+void ShadowContext::Check(dsm_result result)
+{
+	inFile = false;
+	PassOnFailure();
+	if((result == DSM_OK) || (result == DSM_DONE))
+		return;
 	if(result == DSM_NO_MEMORY)
 		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
-	return DSM_TRACE;
+	throw POV_EXCEPTION(kFileDataErr, "Deep shadows: " + (complaint.empty() ? string("a map cannot be baked or its file cannot be used.") : complaint));
 }
 
 dsm_result ShadowContext::Trace(void *data, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink)
@@ -91,6 +142,13 @@ int32_t ShadowContext::Pause(void *data)
 		self.failure = std::current_exception();
 		return 1;
 	}
+}
+
+void ShadowContext::SaveProgress(void *data, double share)
+{
+	const Worker& worker = *static_cast<Worker *>(data);
+
+	worker.context->maps.Progress(worker.map, share, true);
 }
 
 }

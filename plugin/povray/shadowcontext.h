@@ -26,6 +26,18 @@ class ShadowContext
 		/// @return     DSM_OK or DSM_OUTSIDE with rgb set, or DSM_TRACE
 		dsm_result LookUp(size_t map, const dsm_receiver& receiver, double rgb[3]);
 
+		/// Whole maps and their files; see dsm.h. All throw the library's sentence if they fail.
+		void Load(size_t map, const string& path);
+		void BeginSave(size_t map, const string& path);
+		void EndSave(size_t map);
+		/// @param[out]     share       of the map that is baked
+		/// @return                     false when there was no tile left to bake
+		bool BakeNext(size_t map, double& share);
+
+		/// An error that the library reports in this thread.
+		/// @return                     false if nobody here would pass it on
+		bool Complain(const char *sentence);
+
 		POV_ULONG lookUps, rayTraced;
 
 		ShadowMaps& Maps() { return maps; }
@@ -34,6 +46,8 @@ class ShadowContext
 		static dsm_result Trace(void *worker, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink);
 		static int32_t Pause(void *worker);
 	private:
+		static void SaveProgress(void *worker, double share);
+
 		/// Hands a map's requests to this thread.
 		struct Worker
 		{
@@ -46,6 +60,11 @@ class ShadowContext
 		ShadowEvents events;
 		vector<Worker> workers;
 		std::exception_ptr failure; ///< no exception may cross the library, so it waits here
+		bool inFile;                ///< a file's call is under way
+		string complaint;           ///< of that call
+
+		void PassOnFailure();
+		void Check(dsm_result result);
 };
 
 }

@@ -83,7 +83,7 @@ void BoxPlane(const BBOX& box, const Vector3d& point, const Vector3d& toLight, d
 }
 
 /// Where the receiver's own surface can be. Surfaces that are in no map need no bias at all.
-static void DescribeReceiver(const ShadowReceiver& receiver, const ShadowMaps& maps, const Vector3d& point, const Vector3d& toLight, dsm_receiver& out)
+static void DescribeReceiver(const ShadowSurface& receiver, const ShadowMaps& maps, const Vector3d& point, const Vector3d& toLight, dsm_receiver& out)
 {
 	for(int i = 0; i < 3; i++)
 		out.point[i] = point[i];
@@ -130,7 +130,15 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 
 	dsm_receiver receiver;
 	double rgb[3];
-	DescribeReceiver(shadowReceiver, maps, point, Vector3d(lightsourceray.Direction), receiver);
+	DescribeReceiver(shadowReceiver.surface, maps, point, Vector3d(lightsourceray.Direction), receiver);
+	receiver.has_footprint = shadowReceiver.surface.seenByCamera;
+	if(receiver.has_footprint)
+	{
+		FindShadowFootprint(point);
+		for(int i = 0; i < 2; i++)
+			for(int k = 0; k < 3; k++)
+				receiver.footprint[i][k] = shadowReceiver.footprint[i][k];
+	}
 	if(shadowReceiver.context->LookUp(index, receiver, rgb) == DSM_TRACE)
 		return false;
 
@@ -156,9 +164,8 @@ void Trace::TraceUnmappedCasters(const vector<ObjectPtr>& casters, const LightSo
 {
 	const WithoutVolumes without(qualityFlags);
 	const BeyondSameHit condition;
-	Ray ray(lightsourceray);
+	Ray ray(lightsourceray.Origin, lightsourceray.Direction, Ray::OtherRay, true); // no copy of 4 KB of interiors, which do not matter
 
-	ray.SetFlags(Ray::OtherRay, true, false);
 	for(vector<ObjectPtr>::const_iterator caster(casters.begin()); caster != casters.end(); caster++)
 	{
 		double left = depth;

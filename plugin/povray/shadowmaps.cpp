@@ -13,8 +13,10 @@
 #include "backend/scene/scene.h"
 #include "backend/scene/threaddata.h"
 #include "backend/scene/view.h"
+#include "backend/shadow/shadowbaketask.h"
 #include "backend/shadow/shadowcontext.h"
 #include "backend/shadow/shadowmaps.h"
+#include "backend/support/taskqueue.h"
 
 // this must be the last file included
 #include "base/povdebug.h"
@@ -42,6 +44,9 @@ bool IsRefractingTarget(const ObjectBase *object, const LightSource& light)
 	}
 	return false;
 }
+
+const POV_LONG kProgressInterval = 500; // ms
+const int kProgressWidth = 48; // on the console, a line overwrites the last one
 
 /// Without shadows nobody asks for casters, and the base line of every timing must not pay for them.
 const vector<ObjectPtr> kNoObjects;
@@ -124,7 +129,7 @@ size_t ShadowMaps::Add(const LightSource& light, int method)
 	}
 
 	const bool created = (light.shadowSettings != 0) ?
-		Create(light, scene.shadowSettings[light.shadowSettings - 1]->Get()) : Create(light, ShadowSettings().Get());
+		Create(light, *scene.shadowSettings[light.shadowSettings - 1]) : Create(light, ShadowSettings());
 	if(!created)
 		rayTracedLights++;
 	return created ? maps.size() - 1 : kNone;
@@ -151,7 +156,7 @@ bool ShadowMaps::CanHaveMap(const LightSource& light) const
 	return why == NULL;
 }
 
-bool ShadowMaps::Create(const LightSource& light, const dsm_settings *settings)
+bool ShadowMaps::Create(const LightSource& light, const ShadowSettings& settings)
 {
 	const SceneData& scene = *viewData->GetSceneData();
 	dsm_host host;
@@ -166,7 +171,7 @@ bool ShadowMaps::Create(const LightSource& light, const dsm_settings *settings)
 	host.report = &ShadowMaps::Report;
 
 	Describe(light, casters.Boxes(), description);
-	const dsm_result result = ShadowPlugin::Api().map_create(&host, &description, settings, &map);
+	const dsm_result result = ShadowPlugin::Api().map_create(&host, &description, settings.Get(), &map);
 	if(result == DSM_NO_MEMORY)
 		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
 	if(result != DSM_OK)
@@ -178,8 +183,69 @@ bool ShadowMaps::Create(const LightSource& light, const dsm_settings *settings)
 	for(vector<ObjectPtr>::const_iterator i(scene.objects.begin()); i != scene.objects.end() && !entry.photons; i++)
 		entry.photons = IsRefractingTarget(*i, light);
 	entry.atmosphere = light.Media_Interaction && light.Media_Attenuation && ((scene.fog != NULL) || !scene.atmosphere.empty());
+	entry.loadPath = settings.loadPath;
+	entry.savePath = settings.savePath;
 	maps.push_back(entry);
 	return true;
+}
+
+void ShadowMaps::AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads)
+{
+	bool files = false, saves = false;
+
+	for(vector<ShadowMap>::const_iterator i(maps.begin()); i != maps.end(); i++)
+	{
+		saves = saves || !i->savePath.empty();
+		files = files || saves || !i->loadPath.empty();
+	}
+	if(files)
+	{
+		threads.push_back(static_cast<ViewThreadData *>(queue.AppendTask(new ShadowFilesTask(viewData))));
+		queue.AppendSync();
+	}
+	if(saves)
+	{
+		bakers.assign(maps.size(), contexts.size());
+		for(size_t i = 0; i < contexts.size(); i++)
+			threads.push_back(static_cast<ViewThreadData *>(queue.AppendTask(new ShadowBakeTask(viewData))));
+		queue.AppendSync();
+	}
+}
+
+bool ShadowMaps::LeaveBake(size_t map)
+{
+	boost::lock_guard<boost::mutex> lock(bakeMutex);
+
+	return --bakers[map] == 0;
+}
+
+/// Threads finish tiles many times a second: one message a stage, and then two a second, are enough.
+void ShadowMaps::Progress(size_t map, double share, bool saving)
+{
+	size_t number = 0, count = 0;
+	std::ostringstream stage, text;
+
+	for(size_t i = 0; i < maps.size(); i++)
+		if(!maps[i].savePath.empty())
+		{
+			count++;
+			number += (i <= map) ? 1 : 0;
+		}
+	stage << (saving ? "Saving deep shadow map " : "Deep shadow map ") << number << " of " << count;
+
+	{
+		boost::lock_guard<boost::mutex> lock(bakeMutex);
+
+		if(!stages.insert(stage.str()).second && (sinceProgress.ElapsedRealTime() < kProgressInterval))
+			return;
+		sinceProgress.Reset();
+	}
+
+	stage << " (" << int(100.0 * share) << "%)";
+	text << std::left << std::setw(kProgressWidth) << stage.str();
+	POVMS_Object message(kPOVObjectClass_ShadowProgress);
+	message.SetString(kPOVAttrib_EnglishText, text.str().c_str());
+	RenderBackend::SendViewOutput(viewData->GetViewId(), viewData->GetSceneData()->frontendAddress, kPOVMsgIdent_Progress, message);
 }
 
 /// Tasks follow each other in threads of their own, never more at a time than there are contexts; the next one may start
@@ -208,9 +274,13 @@ void ShadowMaps::Release(ShadowContext *context)
 	maps.idleChanged.notify_one();
 }
 
-void ShadowMaps::Report(void *self, int32_t severity, const char *sentence)
+void ShadowMaps::Report(void *data, int32_t severity, const char *sentence)
 {
-	static_cast<ShadowMaps *>(self)->Tell(severity, sentence);
+	ShadowMaps& self = *static_cast<ShadowMaps *>(data);
+	ShadowContext *context = self.current.get();
+
+	if((severity < 2) || (context == NULL) || !context->Complain(sentence))
+		self.Tell(severity, sentence);
 }
 
 void ShadowMaps::Tell(int severity, const string& sentence) const
@@ -222,57 +292,6 @@ void ShadowMaps::Tell(int severity, const string& sentence) const
 	message.SetString(kPOVAttrib_EnglishText, ("Deep shadows: " + sentence).c_str());
 	message.SetInt(kPOVAttrib_Warning, 0);
 	RenderBackend::SendViewOutput(viewData->GetViewId(), viewData->GetSceneData()->frontendAddress, kPOVMsgIdent_Warning, message);
-}
-
-string ShadowMaps::Statistics() const
-{
-	dsm_statistics sum = { 0 };
-	POV_ULONG lookUps = 0, rayTraced = 0;
-	std::ostringstream text;
-
-	if(maps.empty())
-		return string();
-
-	for(vector<ShadowMap>::const_iterator i(maps.begin()); i != maps.end(); i++)
-	{
-		dsm_statistics s = { 0 };
-		s.size = sizeof(s);
-		ShadowPlugin::Api().statistics(i->map.get(), &s);
-		sum.faces += s.faces;
-		sum.tiles += s.tiles;
-		sum.tiles_baked += s.tiles_baked;
-		sum.tiles_failed += s.tiles_failed;
-		sum.pixels += s.pixels;
-		sum.pixels_baked += s.pixels_baked;
-		sum.pixels_marked += s.pixels_marked;
-		sum.pixels_coloured += s.pixels_coloured;
-		sum.rays += s.rays;
-		sum.vertices_in += s.vertices_in;
-		sum.vertices += s.vertices;
-		sum.bytes += s.bytes;
-		sum.bake_seconds += s.bake_seconds;
-		sum.trace_seconds += s.trace_seconds;
-	}
-	for(vector<shared_ptr<ShadowContext> >::const_iterator i(contexts.begin()); i != contexts.end(); i++)
-	{
-		lookUps += (*i)->lookUps;
-		rayTraced += (*i)->rayTraced;
-	}
-
-	const double baked = max(1.0, double(sum.pixels_baked));
-	text << std::fixed << std::setprecision(1)
-	     << "Maps:                " << maps.size() << " (" << sum.faces << " faces), ray-traced lights: " << rayTracedLights << "\n"
-	     << "Pixels baked:        " << sum.pixels_baked << " of " << sum.pixels << " (" << 100.0 * sum.pixels_baked / max(1.0, double(sum.pixels)) << " percent), coloured: "
-	     << sum.pixels_coloured << ", marked: " << sum.pixels_marked << "\n"
-	     << "Light rays:          " << sum.rays << "\n"
-	     << std::setprecision(2)
-	     << "Vertices per pixel:  " << sum.vertices / baked << " (before compression " << sum.vertices_in / baked << ")\n"
-	     << "Bytes:               " << sum.bytes << "\n"
-	     << "Look-ups:            " << lookUps << ", ray-traced: " << rayTraced << "\n"
-	     << "Bake time:           " << sum.bake_seconds << " thread seconds (" << sum.trace_seconds << " tracing light rays)\n";
-	if(sum.tiles_failed > 0)
-		text << "Tiles failed:        " << sum.tiles_failed << "\n";
-	return text.str();
 }
 
 }

@@ -6,6 +6,7 @@
 
 #include <boost/thread.hpp>
 
+#include "base/timer.h"
 #include "backend/shadow/shadowcasters.h"
 #include "backend/shadow/shadowsettings.h"
 
@@ -13,6 +14,7 @@ namespace pov
 {
 
 class ShadowContext;
+class TaskQueue;
 class ViewData;
 class ViewThreadData;
 
@@ -23,6 +25,7 @@ struct ShadowMap
 	shared_ptr<dsm_map> map;
 	bool photons;     ///< receivers of photons from this light are ray-traced
 	bool atmosphere;  ///< fog and atmospheric media dim this light, and are multiplied in at the look-up
+	string loadPath, savePath; ///< empty: no file
 };
 
 class ShadowMaps
@@ -49,6 +52,17 @@ class ShadowMaps
 
 		const ShadowCasters& Casters() const { return casters; }
 
+		/// Queues what has to be done before anything is shaded: files are opened, and maps that are saved are baked and saved.
+		/// @param[in,out]  threads     the tasks' thread data is added here
+		void AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads);
+
+		/// Tells the front end how far the map is, now and then.
+		void Progress(size_t map, double share, bool saving);
+
+		/// To be called by each bake task when the map has no tile left to take.
+		/// @return                     true for the last of them: all tiles are baked
+		bool LeaveBake(size_t map);
+
 		/// The calling thread's context. Lives as long as the thread works on one task.
 		ShadowContext *Current();
 
@@ -70,13 +84,18 @@ class ShadowMaps
 		boost::condition_variable idleChanged;
 		boost::thread_specific_ptr<ShadowContext> current;
 
+		boost::mutex bakeMutex;         ///< guards what follows
+		vector<size_t> bakers;          ///< for each map, the tasks that are still baking it
+		std::set<string> stages;        ///< that the front end knows of
+		Timer sinceProgress;
+
 		size_t Add(const LightSource& light, int method);
 		bool CanHaveMap(const LightSource& light) const;
-		bool Create(const LightSource& light, const dsm_settings *settings);
+		bool Create(const LightSource& light, const ShadowSettings& settings);
 		void Tell(int severity, const string& sentence) const;
 
 		static void Release(ShadowContext *context);
-		static void Report(void *self, int32_t severity, const char *sentence);
+		static void Report(void *data, int32_t severity, const char *sentence);
 };
 
 }

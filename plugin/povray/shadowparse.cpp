@@ -23,15 +23,6 @@ using namespace pov_base;
 namespace
 {
 
-/// The row of the table with this name, or the row count.
-unsigned int FindParameter(const dsm_api_table& api, const string& name)
-{
-	unsigned int row = 0;
-	while((row < api.parameter_count) && (name != api.parameters[row].name))
-		row++;
-	return row;
-}
-
 string WordList(const dsm_api_table& api)
 {
 	string list;
@@ -75,7 +66,7 @@ bool Parser::Parse_Shadow_Block(LightSource *light)
 		}
 
 		const string word(Shadow_Word());
-		const unsigned int row = FindParameter(api, word);
+		const unsigned int row = ShadowSettings::Find(word);
 
 		if(row == api.parameter_count)
 			Error("'%s' is not a word of deep_shadow. Its words are: %s.", Token.Token_String != NULL ? Token.Token_String : "", WordList(api).c_str());
@@ -85,6 +76,7 @@ bool Parser::Parse_Shadow_Block(LightSource *light)
 		Parse_Shadow_Parameter(*settings, row);
 	}
 	Parse_End();
+	Find_Shadow_Files(*settings);
 
 	sceneData->shadowSettings.push_back(settings);
 	light->shadowSettings = sceneData->shadowSettings.size();
@@ -110,33 +102,72 @@ ShadowSettings *Parser::New_Shadow_Settings()
 	return NULL;
 }
 
-/// Reads the value of one word: a quoted choice, or numbers, singly or as a vector.
+/// Reads the value of one word: a quoted text, numbers, or both. Commas stand between them; vectors count as numbers.
 void Parser::Parse_Shadow_Parameter(ShadowSettings& settings, unsigned int row)
 {
 	const dsm_parameter& parameter = ShadowPlugin::Api().parameters[row];
-	EXPRESS numbers;
-	unsigned int count = 0;
-	string choice;
-	bool numbersFollow = true;
+	vector<double> numbers;
+	string text;
+	bool numbersFollow = (parameter.type == DSM_NUMBERS);
 
-	if(parameter.type == DSM_CHOICE)
+	if(!numbersFollow)
 	{
-		char *text = Parse_C_String();
-		choice = text;
-		POV_FREE(text);
-
-		Get_Token();
-		numbersFollow = (Token.Token_Id == COMMA_TOKEN);
-		if(!numbersFollow)
-			Unget_Token();
+		char *quoted = Parse_C_String(parameter.type == DSM_TEXT);
+		text = quoted;
+		POV_FREE(quoted);
+		numbersFollow = Parse_Shadow_Comma();
 	}
 
-	if(numbersFollow)
-		count = Parse_Unknown_Vector(numbers);
+	while(numbersFollow)
+	{
+		EXPRESS terms;
+		const int count = Parse_Unknown_Vector(terms);
 
-	const string why(settings.Set(row, parameter.type == DSM_CHOICE ? choice.c_str() : NULL, numbers, count));
+		numbers.insert(numbers.end(), terms, terms + count);
+		numbersFollow = Parse_Shadow_Comma();
+	}
+
+	const string why(settings.Set(row, (parameter.type == DSM_NUMBERS) ? NULL : text.c_str(), numbers.empty() ? NULL : &numbers[0], numbers.size()));
 	if(!why.empty())
 		Error("%s", why.c_str());
+}
+
+bool Parser::Parse_Shadow_Comma()
+{
+	Get_Token();
+	if(Token.Token_Id == COMMA_TOKEN)
+		return true;
+	Unget_Token();
+	return false;
+}
+
+/// Turns names into paths as POV-Ray does for its other files: one that is read is looked for in the library path, and
+/// povray.conf has its say on both. A file that is missing is no error before its light wants it.
+void Parser::Find_Shadow_Files(ShadowSettings& settings)
+{
+	const string load(settings.Text("load_file")), save(settings.Text("save_file"));
+
+	if(!load.empty() && !save.empty())
+		Error("A deep_shadow block can have a load_file or a save_file, not both.");
+
+	if(!load.empty())
+	{
+		UCS2String path(ASCIItoUCS2String(load.c_str()));
+		const UCS2String found(sceneData->FindFile(GetPOVMSContext(), path, POV_File_Unknown));
+
+		if(!found.empty())
+			path = found;
+		settings.loadPath = UCS2toASCIIString(path);
+		if(POV_ALLOW_FILE_READ(path.c_str(), POV_File_Unknown) == false)
+			Error("IO Restrictions prohibit read access to '%s'", settings.loadPath.c_str());
+	}
+
+	if(!save.empty())
+	{
+		settings.savePath = save;
+		if(POV_ALLOW_FILE_WRITE(ASCIItoUCS2String(save.c_str()).c_str(), POV_File_Unknown) == false)
+			Error("IO Restrictions prohibit write access to '%s'", save.c_str());
+	}
 }
 
 /// Called when the whole light_source has been read: says which lights cannot have a map.

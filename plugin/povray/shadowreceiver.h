@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface that is being shaded: a map's own answer for it depends on where the surface lies.
+// The surface that is being shaded: a map's own answer for it depends on where the surface lies, and on how much of it
+// the camera's sample stands for.
 
 #ifndef POVRAY_BACKEND_SHADOWRECEIVER_H
 #define POVRAY_BACKEND_SHADOWRECEIVER_H
@@ -9,37 +10,70 @@ namespace pov
 
 class ShadowContext;
 
-/// Part of every Trace object. Empty while media are lit.
-struct ShadowReceiver
+struct ShadowSurface
 {
 	const ObjectBase *object; ///< NULL: no surface
 	const ObjectBase *csg;    ///< the outermost CSG object it is part of, or NULL
 	Vector3d normal;          ///< unperturbed, either side
+	bool seenByCamera;        ///< it is what `ShadowReceiver::cameraRay` has hit
+
+	ShadowSurface() : object(NULL), csg(NULL), seenByCamera(false) { }
+};
+
+/// A camera ray's place in the image, pixels.
+struct ShadowSample
+{
+	DBL x, y, width, height;
+};
+
+/// Part of every Trace object. Without a surface while media are lit.
+struct ShadowReceiver
+{
+	ShadowSurface surface;
 	ShadowContext *context;   ///< of the thread that the Trace object works in; NULL before its first look-up
 
-	ShadowReceiver() : object(NULL), csg(NULL), context(NULL) { }
+	const Ray *cameraRay;     ///< the camera ray that is being traced; NULL if it stands for no known part of the image
+	ShadowSample sample;      ///< of cameraRay
+	bool footprintKnown;
+	double footprint[2][3];   ///< of cameraRay on what it has hit, as dsm_receiver wants it
+
+	ShadowReceiver() : context(NULL), cameraRay(NULL), footprintKnown(false) { }
 };
 
 /// Sets the receiver for as long as a surface is shaded, or clears it, and puts the last one back.
 class ShadowReceiverScope
 {
 	public:
-		ShadowReceiverScope(ShadowReceiver& r, const Intersection& isect, const Vector3d& normal) : receiver(r), saved(r)
+		ShadowReceiverScope(ShadowReceiver& r, const Intersection& isect, const Vector3d& normal, const Ray *ray = NULL) :
+			surface(r.surface), saved(r.surface)
 		{
-			receiver.object = isect.Object;
-			receiver.csg = isect.Csg;
-			receiver.normal = normal;
+			surface.object = isect.Object;
+			surface.csg = isect.Csg;
+			surface.normal = normal;
+			surface.seenByCamera = (ray != NULL) && (ray == r.cameraRay);
 		}
-		explicit ShadowReceiverScope(ShadowReceiver& r) : receiver(r), saved(r) { receiver.object = receiver.csg = NULL; }
-		~ShadowReceiverScope()
+		explicit ShadowReceiverScope(ShadowReceiver& r) : surface(r.surface), saved(r.surface) { surface = ShadowSurface(); }
+		~ShadowReceiverScope() { surface = saved; }
+	private:
+		ShadowSurface& surface;
+		const ShadowSurface saved;
+};
+
+/// Names the camera ray for as long as it is traced.
+class ShadowCameraScope
+{
+	public:
+		ShadowCameraScope(ShadowReceiver& r, const Ray& ray, DBL x, DBL y, DBL width, DBL height) : receiver(r)
 		{
-			receiver.object = saved.object;
-			receiver.csg = saved.csg;
-			receiver.normal = saved.normal;
+			const ShadowSample sample = { x, y, width, height };
+
+			receiver.cameraRay = &ray;
+			receiver.sample = sample;
+			receiver.footprintKnown = false;
 		}
+		~ShadowCameraScope() { receiver.cameraRay = NULL; }
 	private:
 		ShadowReceiver& receiver;
-		const ShadowReceiver saved;
 };
 
 }

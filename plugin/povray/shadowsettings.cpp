@@ -32,4 +32,21 @@ string ShadowSettings::Set(unsigned int parameter, const char *choice, const dou
 	return why;
 }
 
+unsigned int ShadowSettings::Find(const string& name)
+{
+	const dsm_api_table& api = ShadowPlugin::Api();
+	unsigned int row = 0;
+
+	while((row < api.parameter_count) && (name != api.parameters[row].name))
+		row++;
+	return row;
+}
+
+string ShadowSettings::Text(const char *word) const
+{
+	const char *text = ShadowPlugin::Api().settings_text(settings, Find(word));
+
+	return (text != NULL) ? text : "";
+}
+
 }

@@ -21,6 +21,15 @@ class ShadowSettings
 		string Set(unsigned int parameter, const char *choice, const double *numbers, unsigned int count);
 
 		const dsm_settings *Get() const { return settings; }
+
+		/// The row of the published table with this name, or the table's row count.
+		static unsigned int Find(const string& name);
+
+		/// What a word that takes the name of a file was given; empty if nothing.
+		string Text(const char *word) const;
+
+		/// Where the two files are; empty: none. The names alone do not tell.
+		string loadPath, savePath;
 	private:
 		dsm_settings *settings;
 

@@ -30,8 +30,9 @@ typedef struct {
   int count;
   dsm_result fail_with;     /* what trace returns instead of tracing, unless DSM_OK */
   int32_t stop;             /* what pause returns */
+  dsm_box *boxes;           /* of the shapes, as long as the map lives */
   int sentences;            /* reported so far */
-  char last[300];
+  char last[600];
 } world;
 
 static inline shape sphere_at(double x, double y, double z, double radius, double pass) {
@@ -145,13 +146,13 @@ static inline dsm_settings *settings_of(const char *const *words) {
   assert_non_null(settings);
   for (; words && *words; ++words) {
     char name[32], choice[32] = "", why[200];
-    double numbers[2];
+    double numbers[6];
     int n = 0;
     uint32_t index = 0, count;
     sscanf(*words, "%31s%n", name, &n);
     const char *rest = *words + n;
     if (sscanf(rest, " %31[a-z]%n", choice, &n) == 1) rest += n;
-    int got = sscanf(rest, "%lf %lf", &numbers[0], &numbers[1]);
+    int got = sscanf(rest, "%lf %lf %lf %lf %lf %lf", &numbers[0], &numbers[1], &numbers[2], &numbers[3], &numbers[4], &numbers[5]);
     count = got > 0 ? (uint32_t)got : 0;
     while (strcmp(dsm_api.parameters[index].name, name) != 0) ++index;
     if (dsm_api.settings_set(settings, index, choice[0] ? choice : NULL, numbers, count, why, sizeof why) != DSM_OK)
@@ -176,20 +177,26 @@ static inline dsm_light parallel_at(double x, double y, double z, double dx, dou
   return light;
 }
 
+/* A world has one map at a time; map_close takes both apart. */
 static inline dsm_map *map_of(world *w, dsm_light light, const char *const *words) {
-  dsm_box *boxes = malloc((size_t)(w->count + 1) * sizeof *boxes);
-  assert_non_null(boxes);
-  for (int i = 0; i < w->count; ++i) boxes[i] = w->shapes[i].box;
-  light.casters = boxes;
+  w->boxes = malloc((size_t)(w->count + 1) * sizeof *w->boxes);
+  assert_non_null(w->boxes);
+  for (int i = 0; i < w->count; ++i) w->boxes[i] = w->shapes[i].box;
+  light.casters = w->boxes;
   light.caster_count = (uint64_t)w->count;
   dsm_settings *settings = settings_of(words);
   dsm_host host = host_of(w);
   dsm_map *map = NULL;
   dsm_result result = dsm_api.map_create(&host, &light, settings, &map);
   dsm_api.settings_destroy(settings);
-  free(boxes);
   if (result != DSM_OK) fail_msg("map_create: %d, %s", (int)result, w->last);
   return map;
+}
+
+static inline void map_close(world *w, dsm_map *map) {
+  dsm_api.map_destroy(map);
+  free(w->boxes);
+  w->boxes = NULL;
 }
 
 /* A map with one worker, the shape of most tests. */
@@ -205,7 +212,7 @@ static inline void stage_open(stage *s, const shape *shapes, int count, dsm_ligh
 
 static inline void stage_close(stage *s) {
   dsm_api.worker_destroy(s->worker);
-  dsm_api.map_destroy(s->map);
+  map_close(&s->w, s->map);
 }
 
 static inline dsm_receiver in_air(double x, double y, double z) { return (dsm_receiver){.point = {x, y, z}}; }

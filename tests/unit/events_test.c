@@ -153,6 +153,23 @@ static void order_is_by_ray_then_front_and_stable(void **state) {
   sink_free(&sink);
 }
 
+/* A host that reports in order costs no copy, whatever the last batch was like. */
+static void what_is_in_order_stays_where_it_is(void **state) {
+  (void)state;
+  dsm_ray rays[] = {ray(0, 10), ray(0, 10), ray(0, 10)};
+  const struct { uint32_t ray[3]; double z[3]; int in_order; } cases[] = {
+    {{0, 0, 2}, {1, 1, 0}, 1}, {{0, 0, 2}, {2, 1, 3}, 0}, {{0, 1, 2}, {3, 2, 1}, 1}, {{0, 2, 1}, {1, 2, 3}, 0},
+  };
+  dsm_sink sink = {0};
+  for (int k = 0; k < 4; ++k) {
+    assert_int_equal(sink_begin(&sink, rays, 3), DSM_OK);
+    for (int i = 0; i < 3; ++i) sink_surface(&sink, cases[k].ray[i], cases[k].z[i], half);
+    assert_int_equal(sink_order(&sink), DSM_OK);
+    assert_int_equal(sink.ordered == sink.events, cases[k].in_order);
+  }
+  sink_free(&sink);
+}
+
 static void next_batch_keeps_counters_only(void **state) {
   (void)state;
   dsm_ray rays[] = {ray(0, 10), ray(0, 10)};
@@ -194,6 +211,7 @@ int main(void) {
     cmocka_unit_test(reversed_span_is_turned_round),
     cmocka_unit_test(foreign_ray_is_refused),
     cmocka_unit_test(order_is_by_ray_then_front_and_stable),
+    cmocka_unit_test(what_is_in_order_stays_where_it_is),
     cmocka_unit_test(next_batch_keeps_counters_only),
     cmocka_unit_test(refuses_what_memory_cannot_hold),
   };

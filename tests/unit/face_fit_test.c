@@ -12,6 +12,15 @@
 
 enum { BOXES = 4 };
 
+static void fit(const dsm_light *light, const uint32_t resolution[2], double filter_width, projection *out) {
+  dsm_settings settings;
+  settings_defaults(&settings);
+  settings.resolution[0] = resolution[0];
+  settings.resolution[1] = resolution[1];
+  settings.filter_width = filter_width;
+  face_fit(light, &settings, out);
+}
+
 /* All coordinates are multiples of 1/64, so that moving light and casters together changes no rounding. */
 static double step(rng *r, double low, double high) { return floor(64 * rng_between(r, low, high)) / 64; }
 
@@ -55,7 +64,7 @@ static void casters_keep_out_of_the_margin(void **state) {
     uint32_t resolution[2] = {1 + rng_below(&r, 150), rng_below(&r, 3) ? 0 : 1 + rng_below(&r, 150)};
     double width = rng_between(&r, 0.01, 5), margin = 0.5 + 0.5 * width - 1e-3;
     projection p;
-    face_fit(&light, resolution, width, &p);
+    fit(&light, resolution, width, &p);
     for (int k = 0; k < 40; ++k) {
       const dsm_box *box = &boxes[rng_below(&r, (uint32_t)light.caster_count)];
       double q[3];
@@ -92,7 +101,7 @@ static void resolution_is_met(void **state) {
     uint32_t resolution[2] = {20 + rng_below(&r, 100), rng_below(&r, 3) ? 0 : 20 + rng_below(&r, 100)};
     uint32_t longest[2] = {0, 0};
     projection p;
-    face_fit(&light, resolution, rng_between(&r, 0.01, 5), &p);
+    fit(&light, resolution, rng_between(&r, 0.01, 5), &p);
     for (uint32_t i = 0; i < p.count; ++i) {
       longest[0] = p.faces[i].width > longest[0] ? p.faces[i].width : longest[0];
       longest[1] = p.faces[i].height > longest[1] ? p.faces[i].height : longest[1];
@@ -119,7 +128,7 @@ static void a_cubes_faces_look_six_ways(void **state) {
     light.cos_angle = cos(acos(-1) / 180 * degrees) + 1e-12;   /* 90 degrees are in front, whatever cos says */
     memcpy(light.direction, frame_along((double[]){0.48, 0.6, 0.64}).right, sizeof light.direction);
     projection p;
-    face_fit(&light, (uint32_t[]){40, 0}, 1, &p);
+    fit(&light, (uint32_t[]){40, 0}, 1, &p);
     assert_int_equal(p.count, MAX_FACES);
     for (int i = 0; i < MAX_FACES; ++i) {
       const frame *a = &p.faces[i].axes;
@@ -154,8 +163,8 @@ static void only_what_the_light_sees_matters(void **state) {
       }
     }
     projection p, q;
-    face_fit(&light, (uint32_t[]){64, 0}, 1, &p);
-    face_fit(&other, (uint32_t[]){64, 0}, 1, &q);
+    fit(&light, (uint32_t[]){64, 0}, 1, &p);
+    fit(&other, (uint32_t[]){64, 0}, 1, &q);
     assert_seeded(&r, memcmp(q.origin, other.origin, sizeof q.origin) == 0 && p.count == q.count);
     assert_seeded(&r, memcmp(p.faces, q.faces, sizeof p.faces) == 0);
   }

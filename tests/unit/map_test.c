@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "../oracle/oracle.h"
+#include "core/settings.h"
 
 static dsm_result create(world *w, dsm_light light, dsm_map **map) {
   dsm_host host = host_of(w);
@@ -56,7 +57,7 @@ static void nothing_to_destroy(void **state) {
   dsm_api.map_destroy(NULL);
   dsm_api.worker_destroy(NULL);
   dsm_api.settings_destroy(NULL);
-  assert_true(dsm_api.abi == DSM_ABI && dsm_api.size == sizeof(dsm_api_table) && dsm_api.parameter_count == 5);
+  assert_true(dsm_api.abi == DSM_ABI && dsm_api.size == sizeof(dsm_api_table) && dsm_api.parameter_count == WORD_COUNT);
 }
 
 static void no_casters_all_lit(void **state) {
@@ -100,7 +101,7 @@ static void statistics_add_up(void **state) {
   stage_open(&s, all, 2, parallel_at(0, 0, 1, 0, 0, 1), WORDS("resolution 50", "samples 4"));
   dsm_statistics got = {.size = sizeof got};
   dsm_api.statistics(s.map, &got);
-  assert_true(got.faces == 1 && got.tiles == 16 && got.tiles_baked == 0 && got.pixels == 2500 && got.pixels_baked == 0);
+  assert_true(got.faces == 1 && got.tiles == 16 + 4 + 5 && got.tiles_baked == 0 && got.pixels == 2500 && got.pixels_baked == 0);
   assert_true(fabs(got.near_depth - 3) < 1e-8 && fabs(got.far_depth - 6) < 1e-8);
   uint64_t empty = got.bytes;
   for (double x = -1.01; x < 1.02; x += 0.02)
@@ -109,13 +110,46 @@ static void statistics_add_up(void **state) {
   assert_true(got.tiles_baked == 16 && got.pixels_baked == 2500 && got.rays == 10000 && got.tiles_failed == 0);
   assert_true(got.pixels_coloured > 400 && got.pixels_coloured < 900 && got.pixels_marked == 0);
   assert_true(got.vertices > 4000 && got.vertices <= got.vertices_in && got.events > 10000);
-  assert_true(got.bytes > empty + 16 * got.pixels_coloured && got.bake_seconds >= got.trace_seconds);
+  /* a step is two vertices, of 10 bytes where it is coloured */
+  assert_true(got.bytes > empty + 20 * got.pixels_coloured && got.bake_seconds >= got.trace_seconds);
+  assert_true(got.bytes_most == got.bytes && got.tiles_evicted == 0 && got.tiles_read == 0);
   /* a host that knows only the beginning gets only that */
   dsm_statistics part = {.size = 24};
   part.pixels = 12345;
   dsm_api.statistics(s.map, &part);
-  assert_true(part.tiles == 16 && part.pixels == 12345 && part.size == 24);
+  assert_true(part.tiles == 25 && part.pixels == 12345 && part.size == 24);
   stage_close(&s);
+}
+
+/* The same look-ups, in an order that jumps about, with room for all tiles and for hardly one: the same bits. */
+static void a_small_cache_gives_the_same_answers(void **state) {
+  (void)state;
+  enum { POINTS = 2000 };
+  static double light[2][POINTS];
+  shape all[] = {sphere_at(0, 0, 5, 1, 0), sheet_at(7, 1, 0.5, 0.6, 0.7), fog_in((dsm_box){{-1, -1, 3}, {1, 1, 4}}, 1, 2, 3, 0)};
+  dsm_statistics got[2], empty = {.size = sizeof empty};
+  for (int small = 0; small < 2; ++small) {
+    stage s;
+    stage_open(&s, all, 3, parallel_at(0, 0, 1, 0, 0, 1), WORDS("resolution 100", "samples 4", small ? "cache 0.05" : "cache 50"));
+    dsm_api.statistics(s.map, &empty);
+    rng r = rng_seeded(5);
+    for (int i = 0; i < POINTS; ++i) {
+      dsm_receiver at = in_air(rng_between(&r, -1, 1), rng_between(&r, -1, 1), rng_between(&r, 3, 9));
+      at.has_footprint = i % 10 == 0;
+      at.footprint[0][0] = at.footprint[1][1] = rng_scale(&r, 0.01, 1);
+      light[small][i] = light_of(&s, at, 1);
+    }
+    got[small].size = sizeof got[small];
+    dsm_api.statistics(s.map, &got[small]);
+    stage_close(&s);
+  }
+  assert_memory_equal(light[0], light[1], sizeof light[0]);
+  assert_true(got[0].tiles_evicted == 0 && got[1].tiles_evicted > 100);
+  assert_true(got[1].tiles_baked == got[0].tiles_baked && got[1].vertices == got[0].vertices);
+  assert_true(got[1].pixels_baked == got[0].pixels_baked && got[1].rays > 3 * got[0].rays);
+  uint64_t room = 0.05 * 1024 * 1024;
+  assert_true(got[0].bytes_most - empty.bytes > 5 * room && got[1].bytes - empty.bytes <= room);
+  assert_true(5 * (got[1].bytes_most - empty.bytes) < got[0].bytes_most - empty.bytes);   /* a dozen tiles at a time */
 }
 
 static void settings_and_light_are_copied(void **state) {
@@ -151,6 +185,7 @@ int main(void) {
     cmocka_unit_test(no_casters_all_lit),
     cmocka_unit_test(odd_cones),
     cmocka_unit_test(statistics_add_up),
+    cmocka_unit_test(a_small_cache_gives_the_same_answers),
     cmocka_unit_test(settings_and_light_are_copied),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -21,11 +21,13 @@ static void powers_of_two_fill_all_strata(void **state) {
     rng r = rng_seeded(seed);
     pixel_seed pixel = pixel_sample_seed(rng_below(&r, 6), rng_below(&r, 16384), rng_below(&r, 16384));
     uint32_t m = rng_below(&r, 9), n = 1u << m;
+    pixel_point path[256];
+    pixel_sample_path(n, path);
     for (uint32_t across = 0; across <= m; ++across) {
       unsigned char seen[256] = {0};
       for (uint32_t i = 0; i < n; ++i) {
         double o[2];
-        pixel_sample_offset(&BOX, pixel, i, o);
+        pixel_sample_offset(&BOX, pixel, path[i], o);
         assert_seeded(&r, o[0] > -0.5 && o[0] < 0.5 && o[1] > -0.5 && o[1] < 0.5);
         uint32_t cell = ((uint32_t)((o[0] + 0.5) * (1u << across)) << (m - across)) + (uint32_t)((o[1] + 0.5) * (1u << (m - across)));
         assert_seeded(&r, !seen[cell]);
@@ -39,12 +41,13 @@ static void same_pixel_same_samples_other_pixel_others(void **state) {
   (void)state;
   double a[2], b[2];
   int differ = 0;
+  const pixel_point point = {7, 0x12345678};
   for (uint32_t k = 0; k < 3; ++k) {
     pixel_seed one = pixel_sample_seed(1, 2, 3), other = pixel_sample_seed(k == 0 ? 0 : 1, k == 1 ? 5 : 2, k == 2 ? 5 : 3);
-    pixel_sample_offset(&BOX, one, 7, a);
-    pixel_sample_offset(&BOX, one, 7, b);
+    pixel_sample_offset(&BOX, one, point, a);
+    pixel_sample_offset(&BOX, one, point, b);
     assert_memory_equal(a, b, sizeof a);
-    pixel_sample_offset(&BOX, other, 7, b);
+    pixel_sample_offset(&BOX, other, point, b);
     differ += memcmp(a, b, sizeof a) != 0;
   }
   assert_int_equal(differ, 3);
@@ -61,10 +64,12 @@ static void filters_have_their_moments(void **state) {
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     double sum[2] = {0}, square[2] = {0}, half = cases[k].filter.width / 2;
     enum { PIXELS = 100, RAYS = 1024 };
+    static pixel_point path[RAYS];
+    pixel_sample_path(RAYS, path);
     for (uint32_t p = 0; p < PIXELS; ++p)
       for (uint32_t i = 0; i < RAYS; ++i) {
         double o[2];
-        pixel_sample_offset(&cases[k].filter, pixel_sample_seed(0, p, 77), i, o);
+        pixel_sample_offset(&cases[k].filter, pixel_sample_seed(0, p, 77), path[i], o);
         for (int a = 0; a < 2; ++a) {
           assert_true(fabs(o[a]) <= half);
           sum[a] += o[a] / (PIXELS * RAYS);
@@ -83,11 +88,13 @@ static double edge_error(uint32_t n) {
   rng r = rng_seeded(n);
   double sum = 0;
   enum { PIXELS = 2000 };
+  pixel_point path[256];
+  pixel_sample_path(n, path);
   for (uint32_t p = 0; p < PIXELS; ++p) {
     double angle = rng_between(&r, 0, 6.3), nx = cos(angle), ny = sin(angle), d = rng_between(&r, -0.3, 0.3), got = 0, want = 0;
     for (uint32_t i = 0; i < n; ++i) {
       double o[2];
-      pixel_sample_offset(&BOX, pixel_sample_seed(0, p, 1), i, o);
+      pixel_sample_offset(&BOX, pixel_sample_seed(0, p, 1), path[i], o);
       got += nx * o[0] + ny * o[1] < d;
     }
     for (int i = 0; i < 64; ++i)   /* exact along y, 64 columns */
@@ -107,25 +114,25 @@ static void edges_converge_as_stratified_samples_do(void **state) {
   assert_true(edge_error(48) < 0.05 && edge_error(100) < 0.03);
 }
 
-/* Neighbours on the path are near each other in every pixel. */
+/* The path visits the first n points of the sequence, and neighbours on it are near each other in every pixel. */
 static void path_visits_all_by_short_steps(void **state) {
   (void)state;
   for (uint32_t n = 1; n <= 4096; n = n < 40 ? n + 1 : n * 3) {
-    uint32_t *order = malloc(n * sizeof *order);
+    pixel_point *path = malloc(n * sizeof *path);
     unsigned char *seen = calloc(n, 1);
-    pixel_sample_path(n, order);
+    pixel_sample_path(n, path);
     double length = 0;
     for (uint32_t i = 0; i < n; ++i) {
-      assert_true(order[i] < n && !seen[order[i]]);
-      seen[order[i]] = 1;
+      assert_true(path[i].x < n && !seen[path[i].x]);   /* the first dimension, bits reversed, is the index */
+      seen[path[i].x] = 1;
       if (i == 0) continue;
       double a[2], b[2];
-      pixel_sample_offset(&BOX, pixel_sample_seed(3, n, 9), order[i - 1], a);
-      pixel_sample_offset(&BOX, pixel_sample_seed(3, n, 9), order[i], b);
+      pixel_sample_offset(&BOX, pixel_sample_seed(3, n, 9), path[i - 1], a);
+      pixel_sample_offset(&BOX, pixel_sample_seed(3, n, 9), path[i], b);
       length += hypot(a[0] - b[0], a[1] - b[1]);
     }
     assert_true(length < 2.2 * sqrt(n));   /* at random it would be 0.52 n */
-    free(order);
+    free(path);
     free(seen);
   }
 }

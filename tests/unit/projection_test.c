@@ -11,6 +11,15 @@
 #include "core/face_fit.h"
 #include "random.h"
 
+static void fit(const dsm_light *light, const uint32_t resolution[2], double filter_width, projection *out) {
+  dsm_settings settings;
+  settings_defaults(&settings);
+  settings.resolution[0] = resolution[0];
+  settings.resolution[1] = resolution[1];
+  settings.filter_width = filter_width;
+  face_fit(light, &settings, out);
+}
+
 static const uint32_t SQUARE[2] = {64, 0};
 
 static dsm_light random_light(rng *r, uint32_t kind) {
@@ -68,7 +77,7 @@ static void casters_are_inside_and_rays_come_back(void **state) {
     double width = rng_between(&r, 0.01, 5);
     double margin = ceil(0.5 * width + 0.5);
     projection p;
-    face_fit(&light, resolution, width, &p);
+    fit(&light, resolution, width, &p);
     for (int k = 0; k < 60; ++k) {
       const dsm_box *box = &boxes[rng_below(&r, (uint32_t)light.caster_count)];
       double point[3], reach = 0;
@@ -78,7 +87,7 @@ static void casters_are_inside_and_rays_come_back(void **state) {
       }
       if (!shines(&light, point)) continue;
       projected hits[3];
-      uint32_t n = projection_find(&p, point, hits);
+      uint32_t n = projection_find(&p, point, 0.5, hits);
       double sum = 0;
       assert_seeded(&r, n > 0);
       for (uint32_t h = 0; h < n; ++h) {
@@ -103,19 +112,19 @@ static void resolution_is_that_of_the_longer_side(void **state) {
   dsm_box box = {{-2, -1, 5}, {2, 1, 6}};
   dsm_light light = {.size = sizeof light, .kind = DSM_LIGHT_PARALLEL, .direction = {0, 0, 1}, .casters = &box, .caster_count = 1};
   projection p;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_int_equal(p.faces[0].width, 64);
   assert_int_equal(p.faces[0].height, 33);   /* 31 over the caster, and the margin */
   assert_true(p.faces[0].pixel_u == p.faces[0].pixel_v);
   assert_true(fabs(p.faces[0].pixel_u - 4.0 / 62) < 1e-12);
   uint32_t both[2] = {30, 70};
-  face_fit(&light, both, 1, &p);
+  fit(&light, both, 1, &p);
   assert_true(p.faces[0].width == 30 && p.faces[0].height == 70);
   uint32_t one[2] = {1, 1};
-  face_fit(&light, one, 1, &p);
+  fit(&light, one, 1, &p);
   assert_true(p.faces[0].width == 3 && p.faces[0].height == 3);
   light.radius = 0.5;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_true(p.faces[0].width == 64 && p.faces[0].height == 64 && fabs(p.faces[0].pixel_u - 1.0 / 62) < 1e-12);
 }
 
@@ -127,7 +136,7 @@ static void a_caster_of_no_size(void **state) {
       dsm_light light = {.size = sizeof light, .kind = kind, .direction = {0, 0.6, 0.8}, .cos_angle = 0.9, .casters = boxes, .caster_count = 2};
       if (at_light) memcpy(light.origin, boxes[0].low, sizeof light.origin);
       projection p;
-      face_fit(&light, SQUARE, 1, &p);
+      fit(&light, SQUARE, 1, &p);
       for (uint32_t i = 0; i < p.count; ++i) {
         const face *f = &p.faces[i];
         assert_true(f->width <= 64 && f->height <= 64);
@@ -136,7 +145,7 @@ static void a_caster_of_no_size(void **state) {
       double points[3][3] = {{1, 2, 3}, {1.1, 2.2, 3.3}, {-5, 0, 7}};
       for (int k = 0; k < 3; ++k) {
         projected hits[3];
-        uint32_t n = projection_find(&p, points[k], hits);
+        uint32_t n = projection_find(&p, points[k], 0.5, hits);
         for (uint32_t h = 0; h < n; ++h) assert_true(isfinite(hits[h].x) && isfinite(hits[h].y) && isfinite(hits[h].depth));
       }
     }
@@ -147,22 +156,22 @@ static void no_casters_no_faces(void **state) {
   projection p;
   dsm_light light = {.size = sizeof light, .kind = DSM_LIGHT_POINT};
   projected hits[3];
-  face_fit(&light, SQUARE, 1, &p);
-  assert_int_equal(projection_find(&p, (double[]){1, 2, 3}, hits), 0);
+  fit(&light, SQUARE, 1, &p);
+  assert_int_equal(projection_find(&p, (double[]){1, 2, 3}, 0.5, hits), 0);
   /* behind a spotlight, out of its cone, out of a cylinder, behind its plane: no pixels either */
   dsm_box box = {{-1, -1, -9}, {1, 1, -8}};
   light = (dsm_light){.size = sizeof light, .kind = DSM_LIGHT_SPOT, .direction = {0, 0, 1}, .cos_angle = 0.9, .casters = &box, .caster_count = 1};
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_int_equal(p.faces[0].width, 0);
   light.kind = DSM_LIGHT_PARALLEL;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_int_equal(p.faces[0].width, 0);
   box = (dsm_box){{5, 5, 8}, {6, 6, 9}};
   light.radius = 1;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_int_equal(p.faces[0].width, 0);
   light.kind = DSM_LIGHT_SPOT;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_int_equal(p.faces[0].width, 0);
 }
 
@@ -172,14 +181,14 @@ static void point_lights_choose_between_one_face_and_six(void **state) {
   dsm_box box = {{-1, -1, 2}, {1, 1, 3}};
   dsm_light light = {.size = sizeof light, .kind = DSM_LIGHT_POINT, .casters = &box, .caster_count = 1};
   projection p;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_int_equal(p.count, 1);
   box.low[2] = 0.5;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_int_equal(p.count, 6);
   assert_int_equal(p.faces[1].width, 0);
   light.origin[2] = -1e9;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   assert_int_equal(p.count, 1);
   assert_true(fabs(p.faces[0].near_depth - (1e9 + 0.5)) < 1e-5 && fabs(p.faces[0].far_depth - (1e9 + 3)) < 1e-5);
 }
@@ -190,7 +199,7 @@ static void cube_weights_are_continuous(void **state) {
   dsm_box box = {{-1, -1, -1}, {1, 1, 1}};
   dsm_light light = {.size = sizeof light, .kind = DSM_LIGHT_POINT, .origin = {0.25, 0.5, -0.25}, .casters = &box, .caster_count = 1};
   projection p;
-  face_fit(&light, SQUARE, 1, &p);
+  fit(&light, SQUARE, 1, &p);
   for (uint64_t seed = 0; seed < 300; ++seed) {
     rng r = rng_seeded(seed);
     double start[3], step[3], before[MAX_FACES] = {0};
@@ -202,7 +211,7 @@ static void cube_weights_are_continuous(void **state) {
       double point[3], now[MAX_FACES] = {0}, sum = 0;
       for (int i = 0; i < 3; ++i) point[i] = start[i] + t * step[i];
       projected hits[3];
-      uint32_t n = projection_find(&p, point, hits);
+      uint32_t n = projection_find(&p, point, 0.5, hits);
       for (uint32_t h = 0; h < n; ++h) {
         const face *f = &p.faces[hits[h].face];
         now[hits[h].face] = hits[h].weight;

@@ -44,6 +44,10 @@ static scene random_scene(rng *r, int perspective, double smallest, double large
   return s;
 }
 
+static receiver_plane seen(const scene *s, double bias) {
+  return receiver_plane_seen(&s->p, &s->at, &s->bound, &(receiver_region){s->half, 1}, bias);
+}
+
 /* How deep the plane is along the ray du, dv pixels off; perspective: negative where it is behind the light. */
 static double plane_depth(const scene *s, double du, double dv) {
   dsm_ray ray;
@@ -60,7 +64,7 @@ static void bias_covers_the_footprint(void **state) {
     rng r = rng_seeded(seed);
     scene s = random_scene(&r, seed % 3 > 0, 1e-4, 0.02);
     if (s.cosine < 0.03) continue;
-    receiver_plane plane = receiver_plane_seen(&s.p, &s.at, &s.bound, s.half, SETTING_AUTOMATIC);
+    receiver_plane plane = seen(&s, SETTING_AUTOMATIC);
     double du = rng_between(&r, -1, 1), dv = rng_between(&r, -1, 1), need = 0;
     for (int i = -4; i <= 4; ++i)
       for (int j = -4; j <= 4; ++j) {
@@ -88,7 +92,7 @@ static void two_thirds_are_behind_the_middle(void **state) {
     rng r = rng_seeded(seed);
     scene s = random_scene(&r, seed % 2, 1e-6, 1e-4);
     if (s.cosine < 0.1 || s.cosine > 0.9) continue;
-    receiver_plane plane = receiver_plane_seen(&s.p, &s.at, &s.bound, s.half, SETTING_AUTOMATIC);
+    receiver_plane plane = seen(&s, SETTING_AUTOMATIC);
     double du = rng_below(&r, 2) ? rng_between(&r, -1, 1) : 0, dv = du != 0 ? rng_between(&r, -1, 1) : 0;
     double middle = receiver_middle(&plane, du, dv);
     if (middle == 0) continue;   /* this pixel lies down the slope, all behind the point */
@@ -112,15 +116,15 @@ static void rise_and_fixed_bias(void **state) {
     rng r = rng_seeded(seed);
     scene s = random_scene(&r, seed % 2, 1e-4, 0.02);
     double du = rng_between(&r, -1, 1), dv = rng_between(&r, -1, 1), rise = rng_scale(&r, 1e-3, 10);
-    receiver_plane flat = receiver_plane_seen(&s.p, &s.at, &s.bound, s.half, SETTING_AUTOMATIC);
+    receiver_plane flat = seen(&s, SETTING_AUTOMATIC);
     s.bound.rise = rise;
-    receiver_plane raised = receiver_plane_seen(&s.p, &s.at, &s.bound, s.half, SETTING_AUTOMATIC);
+    receiver_plane raised = seen(&s, SETTING_AUTOMATIC);
     double flat_bias = receiver_bias(&flat, du, dv);
     assert_seeded(&r, receiver_bias(&raised, du, dv) == flat_bias + rise);
     assert_seeded(&r, receiver_middle(&raised, du, dv) == receiver_middle(&flat, du, dv));
     for (int k = 0; k < 2; ++k) {
       double fixed = k * rng_scale(&r, 1e-6, 1);
-      receiver_plane set = receiver_plane_seen(&s.p, &s.at, &s.bound, s.half, fixed);
+      receiver_plane set = seen(&s, fixed);
       assert_seeded(&r, receiver_bias(&set, du, dv) == fixed && receiver_middle(&set, du, dv) == 0);
     }
   }
@@ -136,7 +140,7 @@ static void edge_on(void **state) {
       p.faces[0] = (face){.axes = frame_along((double[]){0, 0, 1}), .pixel_u = 0.01, .pixel_v = 0.02};
       projected at = {.depth = 7};
       dsm_plane bound = {{normals[k][0], normals[k][1], normals[k][2]}, 0};
-      receiver_plane plane = receiver_plane_seen(&p, &at, &bound, 0.625, SETTING_AUTOMATIC);
+      receiver_plane plane = receiver_plane_seen(&p, &at, &bound, &(receiver_region){0.625, 1}, SETTING_AUTOMATIC);
       if (perspective) assert_true(fabs(receiver_bias(&plane, 0, 0) - 7) < 1e-12);
       else if (k < 3) assert_true(receiver_bias(&plane, 0, 0) > 1e20);
       for (int d = 0; d < 9; ++d) {

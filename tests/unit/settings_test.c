@@ -15,7 +15,7 @@ static dsm_settings set;
 static char why[200];
 
 static dsm_result give(uint32_t word, const char *choice, uint32_t count, double a, double b) {
-  double numbers[3] = {a, b, 0};
+  double numbers[6] = {a, b, 0, -1, -2, -3};
   return settings_set(&set, word, choice, numbers, count, why, sizeof why);
 }
 
@@ -27,6 +27,7 @@ static void defaults_are_those_of_the_table(void **state) {
   assert_int_equal(set.samples, 16);
   assert_true(set.tolerance == SETTING_AUTOMATIC && set.bias == SETTING_AUTOMATIC);
   assert_true(set.filter == FILTER_BOX && set.filter_width == 1);
+  assert_true(set.blur == 0 && !set.bounded && set.cache == 1024 && !set.save_file && !set.load_file);
   for (int i = 0; i < WORD_COUNT; ++i) {
     const dsm_parameter *row = &settings_table[i];
     assert_non_null(row->name);
@@ -56,6 +57,35 @@ static void good_values_are_taken(void **state) {
   assert_int_equal(give(WORD_FILTER, "box", 1, 1e-9, 0), DSM_OK);
   assert_int_equal(give(WORD_BIAS, NULL, 1, 1e6, 0), DSM_OK);
   assert_true(set.bias == 1e6);
+  assert_int_equal(give(WORD_BLUR, NULL, 1, 1, 0), DSM_OK);
+  assert_true(set.blur == 1);
+  assert_int_equal(give(WORD_CACHE, NULL, 1, 0.5, 0), DSM_OK);
+  assert_true(set.cache == 0.5);
+  /* two corners in any order */
+  assert_int_equal(give(WORD_BOUNDS, NULL, 6, -5, 7), DSM_OK);
+  assert_true(set.bounded && set.bounds.low[0] == -5 && set.bounds.high[0] == -1);
+  assert_true(set.bounds.low[1] == -2 && set.bounds.high[1] == 7 && set.bounds.low[2] == -3 && set.bounds.high[2] == 0);
+}
+
+/* The last text given is kept, and gone with the settings (a leak checker sees whether). */
+static void texts(void **state) {
+  (void)state;
+  dsm_settings *s = settings_create();
+  char name[] = "one.exr";
+  assert_non_null(s);
+  assert_null(settings_text(s, WORD_SAVE_FILE));
+  assert_int_equal(settings_set(s, WORD_SAVE_FILE, name, NULL, 0, why, sizeof why), DSM_OK);
+  name[0] = 'x';
+  assert_string_equal(settings_text(s, WORD_SAVE_FILE), "one.exr");
+  assert_int_equal(settings_set(s, WORD_SAVE_FILE, "", NULL, 0, why, sizeof why), DSM_INVALID);
+  assert_string_equal(settings_text(s, WORD_SAVE_FILE), "one.exr");
+  assert_int_equal(settings_set(s, WORD_SAVE_FILE, "two.exr", NULL, 0, why, sizeof why), DSM_OK);
+  assert_string_equal(settings_text(s, WORD_SAVE_FILE), "two.exr");
+  assert_null(settings_text(s, WORD_LOAD_FILE));
+  assert_null(settings_text(s, WORD_SAMPLES));
+  assert_null(settings_text(s, WORD_COUNT));
+  settings_destroy(s);
+  settings_destroy(NULL);
 }
 
 /* A refusal names the word, the value and the range, and changes nothing. */
@@ -92,7 +122,14 @@ static void bad_values_are_refused(void **state) {
   refused(WORD_FILTER, "box", 1, 17, 0, "17", "16");
   refused(WORD_BIAS, NULL, 1, -0.1, 0, "-0.1", "at least 0");
   refused(WORD_BIAS, NULL, 1, INFINITY, 0, "inf", "at least 0");
-  refused(WORD_COUNT, NULL, 1, 1, 0, "5", "parameter");
+  refused(WORD_BLUR, NULL, 1, 1.5, 0, "1.5", "from 0 to 1");
+  refused(WORD_BOUNDS, NULL, 3, 1, 1, "3 numbers", "6 numbers");
+  refused(WORD_BOUNDS, NULL, 6, INFINITY, 1, "inf", "1e+150");
+  refused(WORD_SAVE_FILE, NULL, 1, 1, 0, "save_file", "name of a file");
+  refused(WORD_LOAD_FILE, "", 0, 0, 0, "load_file", "name of a file");
+  refused(WORD_LOAD_FILE, "map.exr", 1, 0, 0, "load_file", "name of a file");
+  refused(WORD_CACHE, NULL, 1, 0, 0, "0", "above 0");
+  refused(WORD_COUNT, NULL, 1, 1, 0, "10", "parameter");
 }
 
 static void sentence_fits_or_is_left_out(void **state) {
@@ -109,6 +146,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(defaults_are_those_of_the_table),
     cmocka_unit_test(good_values_are_taken),
+    cmocka_unit_test(texts),
     cmocka_unit_test(bad_values_are_refused),
     cmocka_unit_test(sentence_fits_or_is_left_out),
   };

@@ -11,9 +11,10 @@
 
 enum { MOST = 70 };
 
-/* A function twice: as floats, and as vertices with the same numbers. */
+/* A function twice: as stored, and as vertices with the same numbers. */
 typedef struct {
-  float depth[MOST], value[3 * MOST];
+  float depth[MOST];
+  uint16_t value[3 * MOST];
   vertex same[MOST];
   visibility function;
 } both;
@@ -25,9 +26,9 @@ static void make(both *b, rng *r, uint32_t count, uint32_t channels) {
     b->depth[i] = z * scale;
     b->same[i].z = (double)b->depth[i];
     for (uint32_t c = 0; c < 3; ++c) {
-      float *v = &b->value[channels == 3 ? 3 * i + c : i];
-      if (c < channels) *v = (float)rng_unit(r);
-      b->same[i].v.c[c] = (double)*v;
+      uint16_t *v = &b->value[channels == 3 ? 3 * i + c : i];
+      if (c < channels) *v = rng_below(r, 8) ? (uint16_t)rng_below(r, VALUE_STEPS + 1) : rng_below(r, 2) ? VALUE_STEPS : 0;
+      b->same[i].v.c[c] = *v / 65535.0;
     }
     z += (float)rng_below(r, 3);   /* steps, and more than two vertices at a depth */
   }
@@ -82,17 +83,18 @@ static void one_hint_serves_a_walk(void **state) {
 
 static void every_pair_of_place_and_hint(void **state) {
   (void)state;
-  float depth[MOST], value[MOST];
+  float depth[MOST];
+  uint16_t value[MOST];
   for (uint32_t count = 0; count <= MOST; ++count) {
-    for (uint32_t i = 0; i < count; ++i) depth[i] = (float)i, value[i] = 1.0f / (1 + (float)i);
+    for (uint32_t i = 0; i < count; ++i) depth[i] = (float)i, value[i] = (uint16_t)(VALUE_STEPS / (1 + i));
     visibility f = {depth, value, count, 1};
     for (uint32_t place = 0; place <= count; ++place)
       for (uint32_t start = 0; start <= count + 1; ++start) {
         uint32_t hint = start;
         double v = visibility_at(&f, place - 0.5, &hint).c[0];
         assert_int_equal(hint, place);
-        double expected = place == 0 ? 1 : (double)value[place - 1];
-        if (place > 0 && place < count) expected = (expected + (double)value[place]) / 2;
+        double expected = place == 0 ? 1 : value[place - 1] / 65535.0;
+        if (place > 0 && place < count) expected = (expected + value[place] / 65535.0) / 2;
         assert_true(fabs(v - expected) < 1e-14);
       }
   }
@@ -108,7 +110,8 @@ static void nothing_is_all_lit(void **state) {
 
 static void surface_does_not_shadow_itself(void **state) {
   (void)state;
-  const float depth[] = {3, 3}, value[] = {1, 0};
+  const float depth[] = {3, 3};
+  const uint16_t value[] = {VALUE_STEPS, 0};
   visibility opaque = {depth, value, 2, 1};
   uint32_t hint = 0;
   assert_true(visibility_at(&opaque, 3, &hint).c[0] == 1);
@@ -126,6 +129,23 @@ static void not_a_number_stays_in_bounds(void **state) {
   assert_true(visibility_at(&b.function, (double)NAN, &hint).c[0] == 1);
 }
 
+/* Both ends of the stored range are light and dark exactly, in any channel, and so is what lies between two of them. */
+static void all_and_nothing_are_exact(void **state) {
+  (void)state;
+  const float depth[] = {1, 2, 3, 4};
+  const uint16_t value[] = {65535, 65535, 0, 65535, 0, 65535, 65535, 0, 65535, 0, 0, 0};
+  visibility f = {depth, value, 4, 3};
+  for (int i = 0; i <= 40; ++i) {
+    uint32_t hint = 0;
+    double z = 1 + i * 0.1;
+    rgb v = visibility_at(&f, z, &hint);
+    assert_true(v.c[0] <= 1 && v.c[1] <= 1 && v.c[2] <= 1 && v.c[0] >= 0 && v.c[1] >= 0 && v.c[2] >= 0);
+    if (z <= 1) assert_true(v.c[2] == 1);
+    if (z > 1 && z <= 3) assert_true(v.c[0] == 1);
+    if (z > 4) assert_true(v.c[0] == 0 && v.c[1] == 0 && v.c[2] == 0);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(any_hint_gives_the_same_value),
@@ -134,6 +154,7 @@ int main(void) {
     cmocka_unit_test(nothing_is_all_lit),
     cmocka_unit_test(surface_does_not_shadow_itself),
     cmocka_unit_test(not_a_number_stays_in_bounds),
+    cmocka_unit_test(all_and_nothing_are_exact),
   };
   return cmocka_run_group_tests_name("visibility", tests, NULL, NULL);
 }

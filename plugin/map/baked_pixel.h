@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 /* A pixel between compression and packing: a stretch of its tile's vertices. */
-#ifndef DSM_BAKE_BAKED_PIXEL_H
-#define DSM_BAKE_BAKED_PIXEL_H
+#ifndef DSM_MAP_BAKED_PIXEL_H
+#define DSM_MAP_BAKED_PIXEL_H
 
 #include <stddef.h>
 
 typedef struct {
   size_t first, count;    /* of its vertices */
   int coloured, marked;   /* channels differ; light can grow (then no vertices) */
+  double tolerance;       /* error that its compression was allowed */
 } baked_pixel;
 
 #endif

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "bake/step_sweep.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/compensated.h"
+#include "core/depth_sort.h"
+#include "core/transmittance.h"
+
+typedef struct {
+  double *now;           /* transmittance of each ray behind the depths met so far: a number a channel */
+  uint32_t rays;
+  int channels;
+  compensated sum[3];    /* of `now`, over all rays */
+  double *gaps;          /* [i]: squared difference of rays i and i + 1; NULL: the noise is not wanted */
+  double squares;        /* the sum of `gaps`, */
+  int64_t pairs;         /* and how many of them are not 0 */
+} sweep;
+
+static void renew_gap(sweep *s, uint32_t i)
+{
+  const double *a = s->now + (size_t)i * s->channels, *b = a + s->channels;
+  double square = 0, was = s->gaps[i];
+  for (int c = 0; c < s->channels; c++) {
+    double gap = a[c] - b[c];
+    square = gap * gap > square ? gap * gap : square;
+  }
+  s->gaps[i] = square;
+  s->squares += square - was;
+  s->pairs += (square > 0) - (was > 0);
+}
+
+static void meet(sweep *s, uint32_t ray, rgb transmittance)
+{
+  double *now = s->now + (size_t)ray * s->channels;
+  for (int c = 0; c < s->channels; c++) {
+    double behind = transmittance_behind(now[c], transmittance.c[c]);
+    /* This difference is exact unless it is more than half, which a ray can lose forty times at most. */
+    compensated_add(&s->sum[c], behind - now[c]);
+    now[c] = behind;
+  }
+  if (s->gaps && ray > 0)
+    renew_gap(s, ray - 1);
+  if (s->gaps && ray + 1 < s->rays)
+    renew_gap(s, ray);
+}
+
+/* The last sum is taken afresh: what is dark must be exactly 0. */
+static void sum_afresh(sweep *s)
+{
+  for (int c = 0; c < s->channels; c++) {
+    s->sum[c] = (compensated){0, 0};
+    for (uint32_t i = 0; i < s->rays; i++)
+      compensated_add(&s->sum[c], s->now[(size_t)i * s->channels + c]);
+  }
+}
+
+/* Brings the average up to date; 1 if it has fallen. Rounding must not make it grow, nor negative. */
+static int settle(const sweep *s, rgb *mean)
+{
+  int fallen = 0;
+  for (int c = 0; c < s->channels; c++) {
+    double v = compensated_total(&s->sum[c]) / s->rays;
+    if (!(v < mean->c[c]))
+      continue;
+    mean->c[c] = v > 0 ? v : 0;
+    fallen = 1;
+  }
+  if (s->channels == 1)
+    *mean = rgb_grey(mean->c[0]);
+  return fallen;
+}
+
+static dsm_result run(sweep *s, const depth_key *keys, const step_input *in, double *allowed, vertices *mean)
+{
+  rgb last = rgb_grey(1);
+  double noise = 0;
+  dsm_result result = DSM_OK;
+  for (size_t i = 0; i < in->count && result == DSM_OK;) {
+    double z = keys[i].z;
+    for (; i < in->count && keys[i].z == z; i++) {
+      const event *surface = &in->surfaces[keys[i].index];
+      meet(s, surface->ray - in->first_ray, surface->transmittance);
+    }
+    if (i == in->count)
+      sum_afresh(s);
+    rgb before = last;
+    if (!settle(s, &last))
+      continue;
+    result = vertices_push(mean, z, before);
+    if (result == DSM_OK)
+      result = vertices_push(mean, z, last);
+    if (allowed) {
+      *allowed++ = noise;
+      if (s->pairs == 0)
+        s->squares = 0;   /* without the rounding of those that were */
+      *allowed++ = noise = noise_allowed(s->squares, (double)s->pairs, s->rays);
+    }
+  }
+  return result;
+}
+
+/* So that a worker allocates but a few times. */
+static dsm_result make_room(step_scratch *scratch, size_t count, size_t numbers)
+{
+  if (scratch->room_keys < 2 * count || scratch->room_numbers < numbers) {
+    step_free(scratch);
+    scratch->keys = malloc(3 * count * sizeof *scratch->keys);
+    scratch->numbers = malloc(numbers * sizeof *scratch->numbers);
+    if (!scratch->keys || !scratch->numbers) {
+      step_free(scratch);
+      return DSM_NO_MEMORY;
+    }
+    scratch->room_keys = 3 * count;
+    scratch->room_numbers = numbers;
+  }
+  return DSM_OK;
+}
+
+dsm_result step_sweep(const step_input *in, step_scratch *scratch, noise_profile *profile, vertices *mean)
+{
+  if (in->count == 0)
+    return DSM_OK;
+  size_t values = (size_t)in->rays * in->channels;
+  dsm_result result = make_room(scratch, in->count, values + in->rays);
+  if (result == DSM_OK && profile)
+    result = noise_reserve(profile, 2 * in->count);
+  if (result != DSM_OK)
+    return result;
+  for (size_t i = 0; i < in->count; i++)
+    scratch->keys[i] = (depth_key){in->surfaces[i].front, i};
+  depth_sort(scratch->keys, in->count, scratch->keys + in->count);
+
+  sweep s = {.now = scratch->numbers, .rays = in->rays, .channels = in->channels};
+  for (size_t i = 0; i < values; i++)
+    s.now[i] = 1;
+  if (profile) {
+    s.gaps = s.now + values;
+    memset(s.gaps, 0, s.rays * sizeof *s.gaps);
+  }
+  for (int c = 0; c < s.channels; c++)
+    s.sum[c].sum = s.rays;
+  return run(&s, scratch->keys, in, profile ? profile->allowed : NULL, mean);
+}
+
+void step_free(step_scratch *scratch)
+{
+  free(scratch->keys);
+  free(scratch->numbers);
+  *scratch = (step_scratch){0};
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "core/compress_bundle.h"
+#include "core/extremes.h"
+
+#include <math.h>
+
+void bundle_begin(bundle *b, int level) {
+  b->level = level;
+  b->floor.first = b->floor.end = b->roof.first = b->roof.end = 0;
+  /* So that they are infinitely high and low at every depth. */
+  b->rise.line = (line){{-HUGE_VAL, 0}, HUGE_VAL};
+  b->fall.line = (line){{-HUGE_VAL, 0}, -HUGE_VAL};
+  b->start = b->end = -HUGE_VAL;
+}
+
+/* Below, `side` is 1 for the rise, the floor and all that is seen from above, and -1 for their mirror images. */
+
+/* Turns a line inwards, to pass p; `chain` is what supports it on the left. */
+static inline void turn(tangent *t, chain *chain, point p, int side, int level) {
+  t->support = p;
+  if (level) {
+    t->line = (line){p, 0};
+    return;
+  }
+  if (chain->first == chain->end) return;
+  point *a = &chain->points[chain->first], *end = &chain->points[chain->end];
+  /* The next support is tighter if the line through it is flatter. */
+  while (a + 1 < end && a[1].z < p.z &&
+         side * (p.y - a[1].y) * (p.z - a->z) <= side * (p.y - a->y) * (p.z - a[1].z))
+    ++a;
+  chain->first = (size_t)(a - chain->points);
+  if (p.z > a->z) t->line = (line){*a, (p.y - a->y) / (p.z - a->z)};   /* else nothing holds it still */
+}
+
+static inline void push(chain *chain, point p, int side) {
+  while (chain->end - chain->first > 1) {
+    point *b = &chain->points[chain->end - 1], *a = b - 1;
+    if (side * (b->y - a->y) * (p.z - a->z) > side * (p.y - a->y) * (b->z - a->z)) break;
+    --chain->end;
+  }
+  chain->points[chain->end++] = p;
+}
+
+int bundle_narrow(bundle *b, double z, double low, double high) {
+  double most = line_at(&b->rise.line, z), least = line_at(&b->fall.line, z);
+  if (low > most || high < least) return 0;
+  point bottom = {z, low}, top = {z, high};
+  int lowers = high < most, raises = low > least;
+  if (lowers) turn(&b->rise, &b->floor, top, 1, b->level);
+  if (raises) turn(&b->fall, &b->roof, bottom, -1, b->level);
+  /* An end that touches no line now touches none later. */
+  if (lowers && !b->level) push(&b->roof, top, -1);
+  if (raises && !b->level) push(&b->floor, bottom, 1);
+  if (b->start == -HUGE_VAL) b->start = z;
+  return 1;
+}
+
+void bundle_heights(const bundle *b, double slope, double z, double *low, double *high) {
+  *low = -HUGE_VAL;
+  *high = HUGE_VAL;
+  for (size_t i = b->floor.first; i < b->floor.end; ++i)
+    *low = greater(*low, b->floor.points[i].y + slope * (z - b->floor.points[i].z));
+  for (size_t i = b->roof.first; i < b->roof.end; ++i)
+    *high = lesser(*high, b->roof.points[i].y + slope * (z - b->roof.points[i].z));
+}
+
+line bundle_middle(const bundle *b, double steepest) {
+  double low = b->fall.line.slope, high = lesser(b->rise.line.slope, steepest);
+  /* Where nothing holds one side, a turn by the whole range of values is far enough. */
+  double far = b->end > b->start ? 1 / (b->end - b->start) : 1;
+  if (low == -HUGE_VAL) low = (high == HUGE_VAL ? 0 : high) - far;
+  if (high == HUGE_VAL) high = low + far;
+  double slope = lesser(low + (high - low) / 2, high), bottom, top;
+  double z = b->floor.first < b->floor.end ? b->floor.points[b->floor.first].z : b->start;
+  bundle_heights(b, slope, z, &bottom, &top);
+  if (bottom == -HUGE_VAL) bottom = top;
+  if (top == HUGE_VAL) top = bottom;
+  return (line){{z, bottom + (top - bottom) / 2}, slope};
+}

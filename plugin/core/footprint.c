@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "core/footprint.h"
+
+#include <math.h>
+
+static const double PIXEL = 1.0 / 12;   /* variance of a pixel of the finest level */
+
+static double dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* A side in pixels: the derivative of the projection at the point, times the side. */
+static void side_in_pixels(const projection *p, const projected *at, const double side[3], double out[2])
+{
+  const face *f = &p->faces[at->face];
+  double u = dot(side, f->axes.right), v = dot(side, f->axes.up);
+  if (p->perspective) {
+    double z = at->depth / sqrt(1 + at->u * at->u + at->v * at->v), along = dot(side, f->axes.forward);
+    u = (u - at->u * along) / z;
+    v = (v - at->v * along) / z;
+  }
+  out[0] = u * f->per_u;
+  out[1] = v * f->per_v;
+}
+
+void spread_add(spread *sum, const projection *p, const projected *at, const double sides[2][3])
+{
+  for (int i = 0; i < 2; i++) {
+    double s[2];
+    side_in_pixels(p, at, sides[i], s);
+    sum->xx += s[0] * s[0] / 12;
+    sum->xy += s[0] * s[1] / 12;
+    sum->yy += s[1] * s[1] / 12;
+  }
+}
+
+/* Splits 4^level = `scale` into a level and the share of the next, by variance. */
+static void choose_level(footprint *f, double scale, uint32_t most)
+{
+  double here = 1;
+  while (f->level < most && scale >= 4 * here) {
+    here *= 4;
+    f->level++;
+  }
+  if (f->level < most && scale > here)
+    f->coarser = (scale - here) / (3 * here);
+}
+
+footprint footprint_of(const spread *region, uint32_t most, int stretched)
+{
+  footprint f = {0, 0, 1, 0, 0};
+  double trace = region->xx + region->yy;
+  if (!(trace > PIXEL))   /* the usual case; false for NaN too */
+    return f;
+  double half = 0.5 * (region->xx - region->yy), mean = 0.5 * trace;
+  double apart = sqrt(half * half + region->xy * region->xy);
+  double longer = mean + apart, shorter = fmax(mean - apart, PIXEL);
+  double scale = 1 + 4 * (shorter - PIXEL), rest = longer - shorter;
+  if (!(longer < 1e30)) {   /* as good as infinite */
+    choose_level(&f, 1e30, most);
+    return f;
+  }
+  double length = rest > 0 ? sqrt(12 * rest) : 0;
+  if (!stretched)
+    scale += 4 * fmax(0, rest);
+  else {
+    double finest = length / (FOOTPRINT_PROBES - 1);
+    scale = fmax(scale, finest * finest);
+  }
+  choose_level(&f, scale, most);
+  if (stretched && length > 0) {
+    double pixel = sqrt(fmin(scale, ldexp(1, 2 * (int)most)));
+    f.probes = (uint32_t)fmin(FOOTPRINT_PROBES, 1 + floor(length / pixel + 0.5));
+    /* n points, h apart, have the variance (n^2 - 1) h^2 / 12; no farther apart than two pixels */
+    double n = f.probes, h = f.probes > 1 ? fmin(length / sqrt(n * n - 1), 2 * pixel) : 0;
+    /* the longer axis: the larger of two ways to write the eigenvector */
+    double x = half >= 0 ? half + apart : region->xy, y = half >= 0 ? region->xy : apart - half;
+    double norm = sqrt(x * x + y * y);
+    if (f.probes > 1 && norm > 0) {
+      f.step_x = h * x / norm;
+      f.step_y = h * y / norm;
+    }
+  }
+  return f;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/*
+ * Which pixels of which levels a look-up reads (LV 5.3).
+ *
+ * The light is wanted as the average over a region around the point: what a camera ray stands for, widened by `blur`. A
+ * bilinear look-up is itself an average, of variance 4^level / 4 in pixels of the finest level (1/6 for the tent between
+ * pixels, 1/12 for a pixel itself). So variances are matched:
+ *
+ *    .-------------------.        shorter side --> level: 4^level = 1 + 4 (variance - 1/12), between two levels
+ *   /  o    o    o    o /         longer side  --> so many probes (o) along it, a pixel of that level apart
+ *  '-------------------'
+ *
+ * A region no larger than a pixel of the finest level asks for nothing but the bilinear look-up there, which is the
+ * usual case and costs nothing. The answer depends continuously on the region, but for the number of probes.
+ */
+#ifndef DSM_CORE_FOOTPRINT_H
+#define DSM_CORE_FOOTPRINT_H
+
+#include "core/projection.h"
+
+#define FOOTPRINT_PROBES 8   /* at most: longer regions are read coarser */
+
+/* Second moments of a region in pixels of the finest level. */
+typedef struct { double xx, xy, yy; } spread;
+
+typedef struct {
+  uint32_t level;          /* the finer of the two levels */
+  double coarser;          /* weight of level + 1, from 0 to below 1 */
+  uint32_t probes;
+  double step_x, step_y;   /* from one probe to the next, pixels of the finest level */
+} footprint;
+
+/* Of a square of this side. */
+static inline spread spread_of_square(double side)
+{
+  double v = side * side / 12;
+  return (spread){v, 0, v};
+}
+
+/* Adds the parallelogram with these two sides (scene units) around a point, as one face sees it there. */
+void spread_add(spread *sum, const projection *p, const projected *at, const double sides[2][3]);
+
+/* `most` is the coarsest level that may be read, `stretched` whether there may be more than one probe. */
+footprint footprint_of(const spread *region, uint32_t most, int stretched);
+
+/* Pixels of the finest level beyond which a footprint with these limits reads nothing. */
+static inline double footprint_reach(uint32_t most, int stretched)
+{
+  return (1u << most) * (1.5 + (stretched ? FOOTPRINT_PROBES - 1 : 0));
+}
+
+#endif

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "map/pyramid.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/average.h"
+#include "core/compress.h"
+#include "map/pack_tile.h"
+#include "map/read_tile.h"
+
+typedef struct {
+  const tile *children[4];        /* row by row, the lowest first; NULL where the face ends */
+  vertices parts, average, stored;
+  average_scratch heap;
+  baked_pixel pixels[TILE_PIXELS];
+} pyramid_scratch;
+
+/* The finer pixel in quarter `q` of pixel (x, y): its tile and its place there. */
+static const tile *child_at(const pyramid_scratch *s, uint32_t x, uint32_t y, uint32_t q, uint32_t *place)
+{
+  uint32_t cx = 2 * x + (q & 1), cy = 2 * y + (q >> 1);
+  *place = cy % TILE_SIDE * TILE_SIDE + cx % TILE_SIDE;
+  return s->children[cy / TILE_SIDE * 2 + cx / TILE_SIDE];
+}
+
+/* Where a face ends, the pixel's other parts are lit: nothing casts a shadow there. */
+static dsm_result make_pixel(pyramid_scratch *s, uint32_t x, uint32_t y, baked_pixel *out)
+{
+  static const double weights[4] = {0.25, 0.25, 0.25, 0.25};
+  size_t first[5];
+  double squares = 0;
+  int parts = 0, coloured = 0;
+  *out = (baked_pixel){.first = s->stored.count};
+  s->parts.count = 0;
+  for (uint32_t q = 0; q < 4; q++) {
+    uint32_t place;
+    const tile *t = child_at(s, x, y, q, &place);
+    first[q] = s->parts.count;
+    if (!t || t->kind != TILE_STORED)
+      continue;
+    if (tile_is_marked(t, place)) {
+      out->marked = 1;
+      return DSM_OK;
+    }
+    dsm_result result = read_pixel(t, place, &s->parts);
+    if (result != DSM_OK)
+      return result;
+    if (s->parts.count > first[q]) {
+      squares += (double)t->tolerance * t->tolerance;
+      coloured |= tile_is_coloured(t, place);
+      parts++;
+    }
+  }
+  if (!parts)
+    return DSM_OK;
+  first[4] = s->parts.count;
+  s->average.count = 0;
+  average_input in = {s->parts.data, first, weights, 4};
+  dsm_result result = average_sweep(&in, &s->heap, &s->average);
+  if (result != DSM_OK)
+    return result;
+  out->coloured = coloured;
+  out->tolerance = 0.5 * sqrt(squares / parts);
+  result = compress_minimal(s->average.data, s->average.count, coloured ? 3 : 1,
+                           fmax(0, out->tolerance - VALUE_ROUNDING), &s->stored);
+  out->count = s->stored.count - out->first;
+  return result;
+}
+
+static dsm_result make_pixels(pyramid_scratch *s, const tile **out)
+{
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    dsm_result result = make_pixel(s, i % TILE_SIDE, i / TILE_SIDE, &s->pixels[i]);
+    if (result != DSM_OK)
+      return result;
+  }
+  return pack_tile(s->pixels, &s->stored, out);
+}
+
+/* Tells whether any of the four stores anything. */
+static dsm_result get_children(dsm_worker *worker, const tile_key *key, const tile *children[4], int *stored)
+{
+  const tile_grid *grid = &worker->map->store.grids[key->face][key->level - 1];
+  *stored = 0;
+  for (uint32_t q = 0; q < 4; q++) {
+    tile_key child = {key->face, key->level - 1, 2 * key->x + (q & 1), 2 * key->y + (q >> 1)};
+    children[q] = NULL;
+    if (child.x >= grid->across || child.y >= grid->up)
+      continue;
+    dsm_result result = worker_tile(worker, &child, &children[q]);
+    if (result != DSM_OK)
+      return result;
+    *stored |= children[q]->kind == TILE_STORED;
+  }
+  return DSM_OK;
+}
+
+dsm_result pyramid_make(dsm_worker *worker, const tile_key *key, const tile **out)
+{
+  const tile *children[4];
+  int stored;
+  *out = NULL;
+  dsm_result result = get_children(worker, key, children, &stored);
+  if (result != DSM_OK)
+    return result;
+  for (int q = 0; q < 4; q++)
+    if (children[q] && children[q]->kind == TILE_FAILED) {
+      *out = &tile_failed;
+      return DSM_OK;
+    }
+  if (!stored) {
+    *out = &tile_lit;
+    return DSM_OK;
+  }
+  pyramid_scratch *s = calloc(1, sizeof *s);
+  if (!s)
+    return DSM_NO_MEMORY;
+  for (int q = 0; q < 4; q++)
+    s->children[q] = children[q];
+  result = make_pixels(s, out);
+  vertices_free(&s->parts);
+  vertices_free(&s->average);
+  vertices_free(&s->stored);
+  average_free(&s->heap);
+  free(s);
+  return result;
+}

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "store/map_file.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "store/map_parts.h"
+
+struct map_file {
+  const deep_exr *exr;
+  deep_reader *reader;
+  char *path;
+  map_parts parts;
+  uint32_t channels;
+  tile_record *records;     /* one for each tile */
+  pthread_mutex_t mutex;    /* of the reader and the tile */
+  deep_tile deep;
+};
+
+static dsm_result cannot_load(const char *path, const deep_error *error, map_reason *why)
+{
+  return map_refused(why, "The deep shadow map \"%s\" cannot be used: there is no OpenImageIO (%s).", path, error->text);
+}
+
+static dsm_result damaged(const char *path, const deep_error *error, map_reason *why)
+{
+  return map_refused(why, "The deep shadow map \"%s\" is damaged or cut off (%s).", path, error->text);
+}
+
+dsm_result map_digest(const void *bytes, size_t size, char out[DIGEST_CHARS], map_reason *why)
+{
+  deep_error error;
+  const deep_exr *exr = deep_exr_load(&error);
+  if (!exr)
+    return map_refused(why, "A deep shadow map cannot be saved or loaded: there is no OpenImageIO (%s).", error.text);
+  return exr->digest(bytes, size, out) ? DSM_OK : map_no_memory(why);
+}
+
+static dsm_result cannot_read(const char *path, int error, map_reason *why)
+{
+  char reason[200];
+  if (error == ENOENT)
+    return map_refused(why, "There is no deep shadow map \"%s\".", path);
+  if (strerror_r(error, reason, sizeof reason))
+    snprintf(reason, sizeof reason, "error %d", error);
+  return map_refused(why, "The deep shadow map \"%s\" cannot be read: %s.", path, reason);
+}
+
+/* OpenImageIO has the same words for whatever it cannot open. */
+static dsm_result check_kind(const char *path, uint64_t *size, map_reason *why)
+{
+  static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
+  unsigned char first[4];
+  struct stat there;
+  *size = 0;
+  if (stat(path, &there))
+    return cannot_read(path, errno, why);
+  if (!S_ISREG(there.st_mode))
+    return map_refused(why, "The deep shadow map \"%s\" cannot be read: this is not the name of a file.", path);
+  FILE *file = fopen(path, "rb");
+  if (!file)
+    return cannot_read(path, errno, why);
+  *size = (uint64_t)there.st_size;
+  size_t n = fread(first, 1, sizeof first, file);
+  fclose(file);
+  if (n != sizeof first || memcmp(first, magic, sizeof magic) != 0)
+    return map_refused(why, "\"%s\" is not an OpenEXR file, so it is no deep shadow map.", path);
+  return DSM_OK;
+}
+
+static const char *get_attribute(void *data, const char *name)
+{
+  map_file *file = data;
+  return file->exr->attribute(file->reader, name);
+}
+
+static dsm_result read_table(map_file *file, const map_header *header, map_reason *why)
+{
+  file->records = malloc((file->parts.tile_count + 1) * sizeof *file->records);
+  attribute_list list = {NULL, 0, 0};
+  dsm_result result = file->records ? map_header_write(header, &list) : DSM_NO_MEMORY;
+  if (result == DSM_OK) {
+    deep_error error = {""};
+    uint64_t seal;
+    if (!tile_table_read(file->exr, file->reader, &file->parts, file->records, &seal, &error))
+      result = damaged(file->path, &error, why);
+    else if (seal != map_seal(list.items, list.count, file->records, file->parts.tile_count))
+      result = map_refused(why, "The deep shadow map \"%s\" is damaged: its header and its tiles do not belong together.",
+                           file->path);
+  }
+  else
+    map_no_memory(why);
+  attribute_list_free(&list);
+  return result;
+}
+
+/* Even an empty tile takes this many bytes. */
+enum { LEAST_TILE = 40 };
+
+static dsm_result check_content(map_file *file, uint64_t size, map_header *header, map_reason *why)
+{
+  dsm_result result = map_header_read(get_attribute, file, file->path, header, why);
+  if (result != DSM_OK)
+    return result;
+  map_parts_lay(&file->parts, &header->projection, header->coloured);
+  file->channels = header->coloured ? 4 : 2;
+  if (file->parts.tile_count > size / LEAST_TILE)
+    result = map_refused(why, "The deep shadow map \"%s\" is damaged or cut off: it is too short for its tiles.", file->path);
+  else if (!file->exr->has_parts(file->reader, file->parts.parts, file->parts.count))
+    result = map_refused(why, "The deep shadow map \"%s\" is damaged: it does not have the parts that its header tells of.",
+                         file->path);
+  else
+    result = read_table(file, header, why);
+  if (result != DSM_OK)
+    map_header_free(header);
+  return result;
+}
+
+dsm_result map_file_open(const char *path, map_header *header, map_file **out, map_reason *why)
+{
+  deep_error error = {""};
+  uint64_t size;
+  *out = NULL;
+  dsm_result result = check_kind(path, &size, why);
+  if (result != DSM_OK)
+    return result;
+  const deep_exr *exr = deep_exr_load(&error);
+  if (!exr)
+    return cannot_load(path, &error, why);
+  map_file *file = calloc(1, sizeof *file);
+  if (!file || pthread_mutex_init(&file->mutex, NULL)) {
+    free(file);
+    return map_no_memory(why);
+  }
+  file->exr = exr;
+  file->path = strdup(path);
+  file->reader = file->path ? exr->open(path, &error) : NULL;
+  result = !file->path ? map_no_memory(why) : !file->reader ? damaged(path, &error, why)
+         : check_content(file, size, header, why);
+  if (result == DSM_OK)
+    *out = file;
+  else
+    map_file_close(file);
+  return result;
+}
+
+/* Under the mutex. */
+static dsm_result read_tile(map_file *file, const tile_key *key, const tile **out, deep_error *error)
+{
+  uint64_t number = map_parts_number(&file->parts, key);
+  const tile_record *record = &file->records[number];
+  uint32_t part = file->parts.part_of[key->face][key->level];
+  if (record->tolerance < 0) {
+    *out = &tile_lit;
+    return DSM_OK;
+  }
+  if (!file->exr->read(file->reader, part, key->x, key->y, &file->deep, error))
+    return DSM_REFUSED;
+  return tile_from_deep(&file->deep, file->channels, record, number, out);
+}
+
+dsm_result map_file_tile(map_file *file, const tile_key *key, const tile **out, map_reason *why)
+{
+  deep_error error = {"its checksum is wrong"};
+  *out = NULL;
+  pthread_mutex_lock(&file->mutex);
+  dsm_result result = read_tile(file, key, out, &error);
+  pthread_mutex_unlock(&file->mutex);
+  if (result == DSM_REFUSED)
+    map_refused(why, "The deep shadow map \"%s\" is damaged at tile %u, %u of level %u of face %u (%s).", file->path,
+                (unsigned)key->x, (unsigned)key->y, (unsigned)key->level, (unsigned)key->face, error.text);
+  else if (result != DSM_OK)
+    map_no_memory(why);
+  return result;
+}
+
+void map_file_close(map_file *file)
+{
+  if (!file)
+    return;
+  if (file->reader)
+    file->exr->close(file->reader);
+  pthread_mutex_destroy(&file->mutex);
+  free(file->records);
+  free(file->deep.words);
+  free(file->path);
+  free(file);
+}

@@ -1,0 +1,375 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "store/map_header.h"
+
+#include <float.h>
+#include <locale.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SCENES = 65536, TEXT = 600 };
+
+static const char *const light_words[] = {"point", "spot", "parallel"};
+static const char *const filter_words[] = {"box", "triangle", "gaussian"};
+
+void map_header_free(map_header *header)
+{
+  free(header->scenes);
+  header->scenes = NULL;
+  header->scene_count = 0;
+}
+
+void attribute_list_free(attribute_list *list)
+{
+  for (uint32_t i = 0; i < list->count; i++) {
+    free((char *)(size_t)list->items[i].name);
+    free((char *)(size_t)list->items[i].text);
+  }
+  free(list->items);
+  *list = (attribute_list){NULL, 0, 0};
+}
+
+static dsm_result grow(attribute_list *list)
+{
+  uint32_t room = list->room ? 2 * list->room : 64;
+  deep_attribute *items = realloc(list->items, room * sizeof *items);
+  if (!items)
+    return DSM_NO_MEMORY;
+  list->items = items;
+  list->room = room;
+  return DSM_OK;
+}
+
+__attribute__((format(printf, 3, 4)))
+static dsm_result put(attribute_list *list, const char *name, const char *format, ...)
+{
+  char text[TEXT];
+  va_list arguments;
+  va_start(arguments, format);
+  int length = vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  if (length < 0 || length >= TEXT || (list->count == list->room && grow(list) != DSM_OK))
+    return DSM_NO_MEMORY;
+  deep_attribute item = {strdup(name), strdup(text)};
+  list->items[list->count++] = item;
+  return item.name && item.text ? DSM_OK : DSM_NO_MEMORY;
+}
+
+/* 17 digits give a double back with the same bits. */
+#define N "%.17g"
+#define N3 N " " N " " N
+#define THREE(v) (v)[0], (v)[1], (v)[2]
+#define AXES(a) THREE((a).right), THREE((a).up), THREE((a).forward)
+
+static dsm_result put_light(attribute_list *list, const dsm_light *light)
+{
+  dsm_result result = put(list, "dsm:light", "%s", light_words[light->kind]);
+  if (result == DSM_OK)
+    result = put(list, "dsm:origin", N3, THREE(light->origin));
+  if (result == DSM_OK && light->kind != DSM_LIGHT_POINT)
+    result = put(list, "dsm:direction", N3, THREE(light->direction));
+  if (result == DSM_OK && light->kind == DSM_LIGHT_SPOT)
+    result = put(list, "dsm:cos_angle", N, light->cos_angle);
+  if (result == DSM_OK && light->kind == DSM_LIGHT_PARALLEL)
+    result = put(list, "dsm:radius", N, light->radius);
+  return result;
+}
+
+static dsm_result put_projection(attribute_list *list, const projection *p)
+{
+  dsm_result result = put(list, "dsm:projection", "%s", p->perspective ? "perspective" : "orthographic");
+  if (result == DSM_OK)
+    result = put(list, "dsm:frame", N3 " " N3 " " N3 " " N3, THREE(p->origin), AXES(p->axes));
+  if (result == DSM_OK)
+    result = put(list, "dsm:faces", "%u " N, (unsigned)p->count, p->overlap);
+  for (uint32_t i = 0; i < p->count && result == DSM_OK; i++) {
+    const face *f = &p->faces[i];
+    char name[40];
+    snprintf(name, sizeof name, "dsm:face%u", (unsigned)i);
+    result = put(list, name, "%u %u  " N " " N "  " N " " N "  " N " " N "  " N " " N "  " N3 "  " N3 "  " N3,
+                 (unsigned)f->width, (unsigned)f->height, f->u0, f->v0, f->pixel_u, f->pixel_v, f->per_u, f->per_v,
+                 f->near_depth, f->far_depth, AXES(f->axes));
+  }
+  return result;
+}
+
+static dsm_result put_settings(attribute_list *list, const map_header *h)
+{
+  dsm_result result = put(list, "dsm:resolution", "%u %u", (unsigned)h->resolution[0], (unsigned)h->resolution[1]);
+  if (result == DSM_OK)
+    result = put(list, "dsm:samples", "%u", (unsigned)h->samples);
+  if (result == DSM_OK)
+    result = h->tolerance < 0 ? put(list, "dsm:tolerance", "automatic") : put(list, "dsm:tolerance", N, h->tolerance);
+  if (result == DSM_OK)
+    result = put(list, "dsm:filter", "%s " N, filter_words[h->filter], h->filter_width);
+  if (result == DSM_OK)
+    result = h->bounded ? put(list, "dsm:bounds", N3 " " N3, THREE(h->bounds.low), THREE(h->bounds.high))
+                        : put(list, "dsm:bounds", "none");
+  return result;
+}
+
+static dsm_result put_content(attribute_list *list, const map_header *h)
+{
+  dsm_result result = put(list, "dsm:colour", "%s", h->coloured ? "yes" : "no");
+  if (result == DSM_OK)
+    result = put(list, "dsm:vertices", "%llu", (unsigned long long)h->vertices);
+  if (result == DSM_OK)
+    result = put(list, "dsm:pixels_marked", "%llu", (unsigned long long)h->pixels_marked);
+  if (result == DSM_OK)
+    result = put(list, "dsm:scenes", "%u", (unsigned)h->scene_count);
+  for (uint32_t i = 0; i < h->scene_count && result == DSM_OK; i++) {
+    char name[40];
+    snprintf(name, sizeof name, "dsm:scene%u", (unsigned)i);
+    result = put(list, name, "%s %s", h->scenes[i].casters, h->scenes[i].probes);
+  }
+  return result;
+}
+
+/* Text has decimal points, whatever the host's language. */
+typedef struct { locale_t plain, before; } number_style;
+
+static int plain_numbers(number_style *style)
+{
+  style->plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+  if (!style->plain)
+    return 0;
+  style->before = uselocale(style->plain);
+  return 1;
+}
+
+static void restore_numbers(const number_style *style)
+{
+  uselocale(style->before);
+  freelocale(style->plain);
+}
+
+dsm_result map_header_write(const map_header *header, attribute_list *list)
+{
+  number_style style;
+  *list = (attribute_list){NULL, 0, 0};
+  if (!plain_numbers(&style))
+    return DSM_NO_MEMORY;
+  dsm_result result = put(list, "dsm:format", "%u", MAP_FORMAT);
+  if (result == DSM_OK)
+    result = put_light(list, &header->light);
+  if (result == DSM_OK)
+    result = put_projection(list, &header->projection);
+  if (result == DSM_OK)
+    result = put_settings(list, header);
+  if (result == DSM_OK)
+    result = put_content(list, header);
+  restore_numbers(&style);
+  return result;
+}
+
+/* ---- Reading ------------------------------------------------------------------------------------------------ */
+
+typedef struct {
+  const char *(*get)(void *data, const char *name);
+  void *data;
+} getter;
+
+/* The text, or one that nothing can be read from. */
+static const char *text_of(const getter *g, const char *name)
+{
+  const char *text = g->get(g->data, name);
+  return text ? text : "";
+}
+
+static int read_numbers(const char *text, double *out, int count)
+{
+  for (int i = 0; i < count; i++) {
+    char *end;
+    out[i] = strtod(text, &end);
+    if (end == text || isnan(out[i]))
+      return 0;
+    text = end;
+  }
+  return 1;
+}
+
+static int all_finite(const double *n, int count)
+{
+  double sum = 0;
+  for (int i = 0; i < count; i++)
+    sum += n[i] * 0;
+  return sum == 0;
+}
+
+static int read_count(const char *text, double most, double *out)
+{
+  return read_numbers(text, out, 1) && *out >= 0 && *out <= most && *out == floor(*out);
+}
+
+/* The place of the text's first word in the list, or -1. */
+static int read_word(const char *text, const char *const *words, int count)
+{
+  size_t length = strcspn(text, " ");
+  for (int i = 0; i < count; i++)
+    if (strlen(words[i]) == length && memcmp(words[i], text, length) == 0)
+      return i;
+  return -1;
+}
+
+static int read_light(const getter *g, dsm_light *light)
+{
+  int kind = read_word(text_of(g, "dsm:light"), light_words, 3);
+  if (kind < 0 || !read_numbers(text_of(g, "dsm:origin"), light->origin, 3) || !all_finite(light->origin, 3))
+    return 0;
+  light->size = sizeof *light;
+  light->kind = (uint32_t)kind;
+  return (kind == DSM_LIGHT_POINT || read_numbers(text_of(g, "dsm:direction"), light->direction, 3))
+      && (kind != DSM_LIGHT_SPOT || read_numbers(text_of(g, "dsm:cos_angle"), &light->cos_angle, 1))
+      && (kind != DSM_LIGHT_PARALLEL || read_numbers(text_of(g, "dsm:radius"), &light->radius, 1));
+}
+
+static void take_axes(const double *n, frame *axes)
+{
+  memcpy(axes->right, n, sizeof axes->right);
+  memcpy(axes->up, n + 3, sizeof axes->up);
+  memcpy(axes->forward, n + 6, sizeof axes->forward);
+}
+
+static int read_face(const char *text, face *f)
+{
+  static const double most_pixels = 1 << (MAX_LEVELS - 1);   /* more have more levels */
+  double n[19];
+  if (!read_numbers(text, n, 19) || !(n[0] >= 0 && n[0] <= most_pixels && n[1] >= 0 && n[1] <= most_pixels))
+    return 0;
+  f->width = (uint32_t)n[0];
+  f->height = (uint32_t)n[1];
+  f->u0 = n[2];
+  f->v0 = n[3];
+  f->pixel_u = n[4];
+  f->pixel_v = n[5];
+  f->per_u = n[6];
+  f->per_v = n[7];
+  f->near_depth = n[8];
+  f->far_depth = n[9];
+  take_axes(n + 10, &f->axes);
+  return (f->width > 0) == (f->height > 0)
+      && (f->width == 0 || (all_finite(n, 19) && f->pixel_u > 0 && f->pixel_v > 0 && f->near_depth <= f->far_depth));
+}
+
+static int read_projection(const getter *g, projection *p)
+{
+  static const char *const words[] = {"orthographic", "perspective"};
+  double n[12];
+  p->perspective = read_word(text_of(g, "dsm:projection"), words, 2);
+  if (p->perspective < 0 || !read_numbers(text_of(g, "dsm:frame"), n, 12) || !all_finite(n, 12))
+    return 0;
+  memcpy(p->origin, n, sizeof p->origin);
+  take_axes(n + 3, &p->axes);
+  if (!read_numbers(text_of(g, "dsm:faces"), n, 2) || !(n[0] == 0 || n[0] == 1 || n[0] == MAX_FACES))
+    return 0;
+  p->count = (uint32_t)n[0];
+  p->overlap = n[1];
+  for (uint32_t i = 0; i < p->count; i++) {
+    char name[40];
+    snprintf(name, sizeof name, "dsm:face%u", (unsigned)i);
+    if (!read_face(text_of(g, name), &p->faces[i]))
+      return 0;
+  }
+  return 1;
+}
+
+static int read_settings(const getter *g, map_header *h)
+{
+  double n[6];
+  if (!read_numbers(text_of(g, "dsm:resolution"), n, 2) || !(n[0] >= 1 && n[0] <= 16384 && n[1] >= 0 && n[1] <= 16384))
+    return 0;
+  h->resolution[0] = (uint32_t)n[0];
+  h->resolution[1] = (uint32_t)n[1];
+  if (!read_count(text_of(g, "dsm:samples"), UINT32_MAX, n))
+    return 0;
+  h->samples = (uint32_t)n[0];
+  const char *tolerance = text_of(g, "dsm:tolerance"), *filter = text_of(g, "dsm:filter");
+  h->tolerance = SETTING_AUTOMATIC;
+  if (strcmp(tolerance, "automatic") != 0 && !(read_numbers(tolerance, &h->tolerance, 1) && h->tolerance >= 0))
+    return 0;
+  int kind = read_word(filter, filter_words, 3);
+  if (kind < 0 || !read_numbers(filter + strlen(filter_words[kind]), &h->filter_width, 1) || !(h->filter_width > 0))
+    return 0;
+  h->filter = (filter_kind)kind;
+  const char *bounds = text_of(g, "dsm:bounds");
+  h->bounded = strcmp(bounds, "none") != 0;
+  if (h->bounded && !read_numbers(bounds, n, 6))
+    return 0;
+  for (int i = 0; i < 3 && h->bounded; i++) {
+    h->bounds.low[i] = n[i];
+    h->bounds.high[i] = n[3 + i];
+  }
+  return 1;
+}
+
+static int read_scene(const char *text, scene_print *scene)
+{
+  if (strlen(text) != 2 * (DIGEST_CHARS - 1) + 1)
+    return 0;
+  memcpy(scene->casters, text, DIGEST_CHARS - 1);
+  memcpy(scene->probes, text + DIGEST_CHARS, DIGEST_CHARS - 1);
+  return 1;
+}
+
+static int read_content(const getter *g, map_header *h)
+{
+  double n;
+  h->coloured = strcmp(text_of(g, "dsm:colour"), "yes") == 0;
+  if (!read_count(text_of(g, "dsm:vertices"), 0x1p53, &n))
+    return 0;
+  h->vertices = (uint64_t)n;
+  if (!read_count(text_of(g, "dsm:pixels_marked"), 0x1p53, &n))
+    return 0;
+  h->pixels_marked = (uint64_t)n;
+  if (!read_count(text_of(g, "dsm:scenes"), MOST_SCENES, &n) || n < 1)
+    return 0;
+  h->scene_count = (uint32_t)n;
+  h->scenes = calloc(h->scene_count, sizeof *h->scenes);
+  for (uint32_t i = 0; h->scenes && i < h->scene_count; i++) {
+    char name[40];
+    snprintf(name, sizeof name, "dsm:scene%u", (unsigned)i);
+    if (!read_scene(text_of(g, name), &h->scenes[i]))
+      return 0;
+  }
+  return h->scenes != NULL;
+}
+
+/* What was understood, written again, must be what was read: so every character counts. */
+static dsm_result check_texts(const getter *g, const map_header *h, const char *path, map_reason *why)
+{
+  attribute_list list;
+  dsm_result result = map_header_write(h, &list);
+  for (uint32_t i = 0; i < list.count && result == DSM_OK; i++)
+    if (strcmp(text_of(g, list.items[i].name), list.items[i].text) != 0)
+      result = map_refused(why, "The deep shadow map \"%s\" is damaged: \"%s\" in its header is not what it should be.",
+                           path, list.items[i].name);
+  attribute_list_free(&list);
+  return result == DSM_NO_MEMORY ? map_no_memory(why) : result;
+}
+
+dsm_result map_header_read(const char *(*get)(void *data, const char *name), void *data, const char *path,
+                           map_header *header, map_reason *why)
+{
+  getter g = {get, data};
+  memset(header, 0, sizeof *header);
+  const char *format = get(data, "dsm:format");
+  if (!format)
+    return map_refused(why, "\"%s\" is an OpenEXR image, but not a deep shadow map.", path);
+  unsigned long number = strtoul(format, NULL, 10);
+  if (number > MAP_FORMAT)
+    return map_refused(why, "The deep shadow map \"%s\" has format %lu, and this program knows only formats up to %u: it was "
+                       "written by a newer one.", path, number, MAP_FORMAT);
+  number_style style;
+  if (!plain_numbers(&style))
+    return map_no_memory(why);
+  int read = read_light(&g, &header->light) && read_projection(&g, &header->projection) && read_settings(&g, header)
+          && read_content(&g, header);
+  restore_numbers(&style);
+  dsm_result result = read ? check_texts(&g, header, path, why)
+                           : map_refused(why, "The deep shadow map \"%s\" is damaged: its header cannot be read.", path);
+  if (result != DSM_OK)
+    map_header_free(header);
+  return result;
+}

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/* dsmtool check: reads every tile and says what is wrong with it. */
+#include <stdio.h>
+
+#include "tool/open_map.h"
+
+/* What is wrong with a pixel, or NULL. Who reads a tile sees already that depths never fall, that visibility never grows and
+ * stays in [0,1]; and before its first vertex it is 1. */
+static const char *wrong_with(const visibility *v, double reach)
+{
+  for (uint32_t i = 0; i < v->count; i++) {
+    if ((double)v->depth[i] > reach)
+      return "has a depth behind the casters";
+    if (i > 1 && v->depth[i] == v->depth[i - 2])
+      return "has three vertices at one depth";
+  }
+  return NULL;
+}
+
+typedef struct {
+  const open_map *map;
+  uint64_t tiles, tiles_wrong, pixels;
+} tally;
+
+/* What is wrong with one pixel of a tile, or NULL. */
+static const char *wrong_in(const tile *t, uint32_t place, const tile_extent *extent, const face *f)
+{
+  visibility v = tile_visibility(t, place);
+  double rounding = 0x1p-20 * (f->far_depth - f->near_depth);   /* depths became floats on their way here */
+  int outside = place % TILE_SIDE >= extent->across || place / TILE_SIDE >= extent->up;
+  if (outside && (v.count || tile_is_marked(t, place)))
+    return "stores something, but lies outside the face";
+  if (v.count && !(t->near_depth >= f->near_depth - rounding))
+    return "has a depth in front of the casters";
+  return wrong_with(&v, f->far_depth - t->near_depth + rounding);
+}
+
+static void check_tile(tally *sum, const map_grid *grid, const tile_key *key, const tile *t)
+{
+  tile_extent extent = tile_extent_of(grid, key);
+  int wrong = 0;
+  sum->pixels += extent.across * extent.up;
+  for (uint32_t place = 0; place < TILE_PIXELS; place++) {
+    const char *what = wrong_in(t, place, &extent, &sum->map->header.projection.faces[key->face]);
+    if (!what)
+      continue;
+    trouble("%s: pixel %u, %d of face %u, level %u %s.", sum->map->path, (unsigned)(key->x * TILE_SIDE + place % TILE_SIDE),
+            (int)grid->height - 1 - (int)(key->y * TILE_SIDE + place / TILE_SIDE), (unsigned)key->face,
+            (unsigned)key->level, what);
+    wrong = 1;
+  }
+  sum->tiles_wrong += (uint64_t)wrong;
+}
+
+static int check_map(tally *sum)
+{
+  const map_header *header = &sum->map->header;
+  tile_key key = {0, 0, 0, 0};
+  map_grid grid;
+  for (int more = 0; next_tile(&header->projection, &key, &more);) {
+    const tile *t;
+    sum->tiles++;
+    if (open_map_tile(sum->map, &key, &t) != STATUS_FINE) {
+      sum->tiles_wrong++;
+      continue;
+    }
+    map_grid_of(&header->projection, key.face, key.level, &grid);
+    if (t->kind == TILE_STORED)
+      check_tile(sum, &grid, &key, t);
+    else
+      sum->pixels += (uint64_t)tile_extent_of(&grid, &key).across * tile_extent_of(&grid, &key).up;
+    tile_destroy(t);
+  }
+  return sum->tiles_wrong ? STATUS_TROUBLE : STATUS_FINE;
+}
+
+int check_run(int argc, char **argv)
+{
+  static const struct argp parser = {NULL, one_path, "MAP", "Reads every tile of a map, compares it with its checksum, and "
+    "checks that every visibility function starts at 1, stays from 0 to 1 and never grows. Says what is wrong; the exit "
+    "status is 0 where nothing is, else 2.", NULL, NULL, NULL};
+  const char *path = NULL;
+  parse_arguments(&parser, argc, argv, &path);
+  open_map map;
+  int status = open_map_begin(&map, path);
+  if (status == STATUS_FINE) {
+    tally sum = {.map = &map};
+    status = check_map(&sum);
+    if (status == STATUS_FINE)
+      printf("%s is good: %llu tiles, %llu pixels of all levels.\n", path, (unsigned long long)sum.tiles,
+             (unsigned long long)sum.pixels);
+    else
+      trouble("%s is damaged: %llu of %llu tiles are bad.", path, (unsigned long long)sum.tiles_wrong,
+              (unsigned long long)sum.tiles);
+  }
+  open_map_end(&map);
+  return status;
+}
