@@ -18,15 +18,27 @@ typedef struct {
 } view;
 
 /* How much of the light that a pixel lets through in front of a surface its own slope may take away in the
- * middle of it. The surface itself takes about a third there. */
-static const double CONTACT = 0.5;
+ * middle of it, and how much of all light: the surface takes about a third there. */
+static const double CONTACT = 0.5, OWN = 0.4;
 
 /* Less light than this is not worth a ray. */
-static const double UNSEEN = 1e-3;
+static const double LEAST = 1e-3;
+
+/* An occluder is close if it takes more than this of the light just in front of the surface's range of depths. */
+static const double CLOSE = 0.25;
 
 /* The coarsest level that a camera ray's footprint may ask for: beyond, an image pixel covers hundreds of map pixels, and
  * a smaller map would do. */
 enum { FOOTPRINT_LEVEL = 5 };
+
+/* Whether much light is lost between depth z and where `seen` of it is left. */
+static int is_close(const visibility *function, double z, uint32_t channel, double seen)
+{
+  visibility_place place;
+  uint32_t hint = 0;
+  double before = visibility_find(function, z, &hint, &place) ? visibility_value(function, &place, channel) : 1;
+  return before - seen > CLOSE * before;
+}
 
 /* Reads a pixel in front of where the receiver's own surface can be. Every plane bounds the surface by itself, so the
  * one that asks for the least bias is enough. du, dv: from the point to the pixel's centre.
@@ -34,7 +46,8 @@ enum { FOOTPRINT_LEVEL = 5 };
  *       light         The bias steps over what lies within it: also over an edge that touches the surface, and light
  *         |           would leak in along the contact. But the surface alone leaves most of the light in the
  *   1 ----+---.       middle of its range of depths (o). Where less is left there, an occluder is so near that the map
- *         |    `.o    cannot tell the two apart, and says so. */
+ *         |    `.o    cannot tell the two apart, and says so: unless far occluders have left so few rays that those
+ *                     may well be the ones that the surface takes, and nothing else is close in front of it. */
 static dsm_result add_surface(view *v, const tile *t, const visibility *function, double du, double dv,
                               uint32_t *hint, double weight)
 {
@@ -47,7 +60,8 @@ static dsm_result add_surface(view *v, const tile *t, const visibility *function
               && visibility_find(function, z - receiver_middle(&v->planes[0], du, dv), hint, &middle);
   for (uint32_t c = 0; c < function->channels; c++) {
     double seen = dims ? visibility_value(function, &front, c) : 1;
-    if (in_doubt && visibility_value(function, &middle, c) < CONTACT * seen - UNSEEN)
+    double taken = in_doubt ? seen - visibility_value(function, &middle, c) : 0;
+    if (taken > CONTACT * seen + LEAST && (taken > OWN || is_close(function, z - 2 * tangent, c, seen)))
       return DSM_TRACE;
     *(function->channels == 1 ? &v->lost_grey : &v->lost.c[c]) += weight * (1 - seen);
   }
