@@ -12,6 +12,7 @@
 
 #include "core/compress.h"
 #include "map/read_tile.h"
+#include "map/tile_store.h"
 #include "store/map_file.h"
 
 typedef struct { uint64_t pixels, exact, greedy, minimal, coloured, bound; } sums;
