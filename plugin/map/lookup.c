@@ -21,7 +21,7 @@ typedef struct {
  * middle of it, and how much of all light: the surface takes about a third there. */
 static const double CONTACT = 0.5, OWN = 0.4;
 
-/* Less light than this is not worth a ray. */
+/* Less light than this is not worth a ray; so a surface that sees no more than twice as much is in no doubt. */
 static const double LEAST = 1e-3;
 
 /* An occluder is close if it takes more than this of the light just in front of the surface's range of depths. */
@@ -56,14 +56,19 @@ static dsm_result add_surface(view *v, const tile *t, const visibility *function
   double other = v->plane_count > 1 ? receiver_bias(&v->planes[1], du, dv) : tangent;
   visibility_place front = {0, 0, 0}, middle = {0, 0, 0};
   int dims = visibility_find(function, z - (tangent < other ? tangent : other), hint, &front);
-  int in_doubt = v->automatic && tangent <= other
-              && visibility_find(function, z - receiver_middle(&v->planes[0], du, dv), hint, &middle);
+  double seen[3] = {1, 1, 1};
+  int in_doubt = 0;
   for (uint32_t c = 0; c < function->channels; c++) {
-    double seen = dims ? visibility_value(function, &front, c) : 1;
-    double taken = in_doubt ? seen - visibility_value(function, &middle, c) : 0;
-    if (taken > CONTACT * seen + LEAST && (taken > OWN || is_close(function, z - 2 * tangent, c, seen)))
+    if (dims)
+      seen[c] = visibility_value(function, &front, c);
+    in_doubt |= v->automatic && tangent <= other && seen[c] > 2 * LEAST;
+  }
+  in_doubt = in_doubt && visibility_find(function, z - receiver_middle(&v->planes[0], du, dv), hint, &middle);
+  for (uint32_t c = 0; c < function->channels; c++) {
+    double taken = in_doubt ? seen[c] - visibility_value(function, &middle, c) : 0;
+    if (taken > CONTACT * seen[c] + LEAST && (taken > OWN || is_close(function, z - 2 * tangent, c, seen[c])))
       return DSM_TRACE;
-    *(function->channels == 1 ? &v->lost_grey : &v->lost.c[c]) += weight * (1 - seen);
+    *(function->channels == 1 ? &v->lost_grey : &v->lost.c[c]) += weight * (1 - seen[c]);
   }
   return DSM_OK;
 }

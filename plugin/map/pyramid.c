@@ -24,6 +24,14 @@ static const tile *child_at(const pyramid_scratch *s, uint32_t x, uint32_t y, ui
   return s->children[cy / TILE_SIDE * 2 + cx / TILE_SIDE];
 }
 
+/* The tolerance of a pixel whose stored parts have these squared ones. Where halving would go below what stored values can
+ * tell, compression would keep every step of thousands of pixels in vain; but a map without tolerance stays exact. */
+static double halved(double squares, int parts)
+{
+  double half = 0.5 * sqrt(squares / parts);
+  return half > 0 ? fmax(half, 2 * VALUE_ROUNDING) : 0;
+}
+
 /* Where a face ends, the pixel's other parts are lit: nothing casts a shadow there. */
 static dsm_result make_pixel(pyramid_scratch *s, uint32_t x, uint32_t y, baked_pixel *out)
 {
@@ -61,7 +69,7 @@ static dsm_result make_pixel(pyramid_scratch *s, uint32_t x, uint32_t y, baked_p
   if (result != DSM_OK)
     return result;
   out->coloured = coloured;
-  out->tolerance = 0.5 * sqrt(squares / parts);
+  out->tolerance = halved(squares, parts);
   result = compress_minimal(s->average.data, s->average.count, coloured ? 3 : 1,
                            fmax(0, out->tolerance - VALUE_ROUNDING), &s->stored);
   out->count = s->stored.count - out->first;

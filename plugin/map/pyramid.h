@@ -5,7 +5,8 @@
  *   level 0   t            Each level may add half the error of the one before, so that the sum stays below twice
  *   level 1   t + t/2      that of the finest, whatever the number of levels. Averaging four halves the noise, too:
  *   level 2   t + t/2 + …  vertices a pixel grow by about the square root of two a level, and all coarser levels
- *                          together take about half of what the finest takes.
+ *                          together take about half of what the finest takes. (What a level adds is no less than the
+ *                          rounding of stored values, 1.5e-5.)
  */
 #ifndef DSM_MAP_PYRAMID_H
 #define DSM_MAP_PYRAMID_H
