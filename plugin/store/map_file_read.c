@@ -8,10 +8,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "store/exr_layout.h"
 #include "store/map_parts.h"
 
 struct map_file {
   const deep_exr *exr;
+  exr_layout *layout;       /* asked before the reader is */
   deep_reader *reader;
   char *path;
   map_parts parts;
@@ -98,6 +100,18 @@ static dsm_result read_table(map_file *file, const map_header *header, map_reaso
   return result;
 }
 
+/* Whether the reader may be trusted with the table of tiles. */
+static int table_is_sound(const map_file *file)
+{
+  uint32_t last = file->parts.count - 1;
+  const deep_part *table = &file->parts.parts[last];
+  for (uint32_t y = 0; y < table->up; y++)
+    for (uint32_t x = 0; x < table->across; x++)
+      if (!exr_layout_tile(file->layout, last, x, y))
+        return 0;
+  return 1;
+}
+
 /* Even an empty tile takes this many bytes. */
 enum { LEAST_TILE = 40 };
 
@@ -113,11 +127,22 @@ static dsm_result check_content(map_file *file, uint64_t size, map_header *heade
   else if (!file->exr->has_parts(file->reader, file->parts.parts, file->parts.count))
     result = map_refused(why, "The deep shadow map \"%s\" is damaged: it does not have the parts that its header tells of.",
                          file->path);
+  else if (!table_is_sound(file))
+    result = map_refused(why, "The deep shadow map \"%s\" is damaged or cut off: its table of tiles is not where it should be.",
+                         file->path);
   else
     result = read_table(file, header, why);
   if (result != DSM_OK)
     map_header_free(header);
   return result;
+}
+
+static dsm_result check_layout(map_file *file, map_reason *why)
+{
+  dsm_result result = exr_layout_open(file->path, &file->layout);
+  if (result == DSM_REFUSED)
+    return map_refused(why, "The deep shadow map \"%s\" is damaged or cut off: its parts are not where they should be.", file->path);
+  return result == DSM_OK ? DSM_OK : map_no_memory(why);
 }
 
 dsm_result map_file_open(const char *path, map_header *header, map_file **out, map_reason *why)
@@ -138,9 +163,11 @@ dsm_result map_file_open(const char *path, map_header *header, map_file **out, m
   }
   file->exr = exr;
   file->path = strdup(path);
-  file->reader = file->path ? exr->open(path, &error) : NULL;
-  result = !file->path ? map_no_memory(why) : !file->reader ? damaged(path, &error, why)
-         : check_content(file, size, header, why);
+  result = file->path ? check_layout(file, why) : map_no_memory(why);
+  if (result == DSM_OK) {
+    file->reader = exr->open(path, &error);
+    result = file->reader ? check_content(file, size, header, why) : damaged(path, &error, why);
+  }
   if (result == DSM_OK)
     *out = file;
   else
@@ -157,6 +184,10 @@ static dsm_result read_tile(map_file *file, const tile_key *key, const tile **ou
   if (record->tolerance < 0) {
     *out = &tile_lit;
     return DSM_OK;
+  }
+  if (!exr_layout_tile(file->layout, part, key->x, key->y)) {
+    snprintf(error->text, sizeof error->text, "it is not where it should be");
+    return DSM_REFUSED;
   }
   if (!file->exr->read(file->reader, part, key->x, key->y, &file->deep, error))
     return DSM_REFUSED;
@@ -184,6 +215,7 @@ void map_file_close(map_file *file)
     return;
   if (file->reader)
     file->exr->close(file->reader);
+  exr_layout_close(file->layout);
   pthread_mutex_destroy(&file->mutex);
   free(file->records);
   free(file->deep.words);
