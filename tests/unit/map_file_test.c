@@ -103,19 +103,68 @@ static void what_is_written_is_read(void **state) {
   assert_int_equal(made_folder_files(1), 1);
 }
 
+/* Maps of depths: flat parts, INFINITY, tiles without any surface, one level. */
+static void depths_are_read_as_written(void **state) {
+  (void)state;
+  int lit = 0, full = 0, cut = 0;
+  for (uint64_t seed = 0; seed < 16; ++seed) {
+    rng r = rng_seeded(seed);
+    made_map m = made_map_random(&r, seed % 2 ? MAX_FACES : 1, seed == 0 ? 900 : 60, MADE_DEPTHS, 0);
+    const char *path = made_path("depths.exr");
+    write_map(path, &m);
+    map_header header;
+    map_file *file = open_map(path, &header);
+    assert_seeded(&r, same_headers(&m.header, &header) && header.block == BLOCK_SHADOW_MAP && header.projection.one_level);
+    dsm_result result = DSM_OK;
+    assert_seeded(&r, made_map_differs(&m, file, &result, &why) == m.parts.tile_count && result == DSM_OK);
+    for (uint64_t i = 0; i < m.parts.tile_count; ++i) {
+      lit += m.tiles[i] == &tile_lit;
+      if (m.tiles[i] != &tile_lit) *(depths_of(m.tiles[i])->most < INFINITY ? &full : &cut) += 1;
+    }
+    map_file_close(file);
+    map_header_free(&header);
+    made_map_free(&m);
+  }
+  assert_true(lit && full && cut);
+  made_folder_files(1);
+}
+
+/* Whatever kind it is of, the file of the other kind is refused, and so is one with other settings of the bake. */
+static void kinds_are_told_apart(void **state) {
+  (void)state;
+  rng r = rng_seeded(1);
+  map_header deep = random_header(&r, 1, 20, MADE_GREY), depths = deep, other;
+  depths.block = BLOCK_SHADOW_MAP;
+  depths.samples = 77;   /* of the look-up, here */
+  other = depths;
+  assert_int_equal(map_header_compare(&depths, &deep, "some.exr", &why), DSM_REFUSED);
+  assert_string_equal(text, "The shadow map \"some.exr\" is that of a deep_shadow block, and cannot be used in a shadow_map block.");
+  assert_int_equal(map_header_compare(&deep, &depths, "some.exr", &why), DSM_REFUSED);
+  assert_string_equal(text, "The shadow map \"some.exr\" is that of a shadow_map block, and cannot be used in a deep_shadow block.");
+  other.samples = 78;
+  other.tolerance = 0.3;
+  assert_int_equal(map_header_compare(&depths, &other, "some.exr", &why), DSM_OK);
+  depths.jittered = !other.jittered;
+  assert_int_equal(map_header_compare(&depths, &other, "some.exr", &why), DSM_REFUSED);
+  assert_non_null(strstr(text, "'depth_samples' was \"" ));
+  map_header_free(&deep);
+}
+
 /* A map of no casters has no tiles. */
 static void an_empty_map(void **state) {
   (void)state;
-  rng r = rng_seeded(1);
-  made_map m = made_map_random(&r, 0, 1, 0, 1);
-  const char *path = made_path("empty.exr");
-  write_map(path, &m);
-  map_header header;
-  map_file *file = open_map(path, &header);
-  assert_true(header.projection.count == 0 && same_headers(&m.header, &header));
-  map_file_close(file);
-  map_header_free(&header);
-  made_map_free(&m);
+  for (int kind = MADE_GREY; kind <= MADE_DEPTHS; ++kind) {
+    rng r = rng_seeded(1);
+    made_map m = made_map_random(&r, 0, 1, kind, 1);
+    const char *path = made_path("empty.exr");
+    write_map(path, &m);
+    map_header header;
+    map_file *file = open_map(path, &header);
+    assert_true(header.projection.count == 0 && same_headers(&m.header, &header));
+    map_file_close(file);
+    map_header_free(&header);
+    made_map_free(&m);
+  }
 }
 
 /* Every value that a vertex can have, in grey and in colour. */
@@ -221,10 +270,9 @@ static void same_map_same_bytes(void **state) {
 }
 
 /* Wherever a file is cut off, it is refused, and its beginning is never used. */
-static void a_cut_file_is_refused(void **state) {
-  (void)state;
+static void cut_file_of(int kind) {
   rng r = rng_seeded(4);
-  made_map m = made_map_random(&r, 6, 20, 0, 5);
+  made_map m = made_map_random(&r, 6, 20, kind, 5);
   const char *path = made_path("whole.exr"), *cut = made_path("cut.exr");
   write_map(path, &m);
   size_t size;
@@ -235,6 +283,11 @@ static void a_cut_file_is_refused(void **state) {
   }
   free(bytes);
   made_map_free(&m);
+}
+
+static void a_cut_file_is_refused(void **state) {
+  (void)state;
+  for (int kind = MADE_GREY; kind <= MADE_DEPTHS; ++kind) cut_file_of(kind);
 }
 
 /* A tile's bytes may be damaged behind the back of an open file, and then it is refused by itself. */
@@ -251,13 +304,12 @@ static int read_all(const char *path, const made_map *m, int *refused_late) {
   return result == DSM_REFUSED || (same && differs == m->parts.tile_count);
 }
 
-static void a_flipped_bit_is_noticed_or_harmless(void **state) {
-  (void)state;
+static void flipped_bit_of(int kind) {
   rng r = rng_seeded(5);
-  made_map m = made_map_random(&r, 1, 40, 1, 4);
+  made_map m = made_map_random(&r, 1, 40, kind, 4);
   while (m.parts.tile_count < 3) {
     made_map_free(&m);
-    m = made_map_random(&r, 1, 40, 1, 4);
+    m = made_map_random(&r, 1, 40, kind, 4);
   }
   const char *path = made_path("flip.exr");
   write_map(path, &m);
@@ -275,6 +327,11 @@ static void a_flipped_bit_is_noticed_or_harmless(void **state) {
   assert_true(late > 0 && late < runs);
   free(bytes);
   made_map_free(&m);
+}
+
+static void a_flipped_bit_is_noticed_or_harmless(void **state) {
+  (void)state;
+  for (int kind = MADE_GREY; kind <= MADE_DEPTHS; ++kind) flipped_bit_of(kind);
 }
 
 /* Replaces all of a text in a file by another one of the same length. */
@@ -346,10 +403,9 @@ static void a_newer_format_is_told_apart(void **state) {
 }
 
 /* Whatever is left out or spoilt, the header is refused and no memory is left over. */
-static void every_attribute_counts(void **state) {
-  (void)state;
+static void attributes_count_of(int kind) {
   rng r = rng_seeded(8);
-  map_header h = random_header(&r, 6, 20, 1), back;
+  map_header h = random_header(&r, 6, 20, kind), back;
   attribute_list list;
   assert_int_equal(map_header_write(&h, &list), DSM_OK);
   for (uint32_t i = 0; i < list.count; ++i) {
@@ -367,6 +423,12 @@ static void every_attribute_counts(void **state) {
   }
   attribute_list_free(&list);
   map_header_free(&h);
+}
+
+static void every_attribute_counts(void **state) {
+  (void)state;
+  attributes_count_of(MADE_COLOURED);
+  attributes_count_of(MADE_DEPTHS);
 }
 
 static void numbers_do_not_depend_on_the_language(void **state) {
@@ -547,6 +609,8 @@ static void a_digest_is_a_sha1(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_is_written_is_read),
+    cmocka_unit_test(depths_are_read_as_written),
+    cmocka_unit_test(kinds_are_told_apart),
     cmocka_unit_test(an_empty_map),
     cmocka_unit_test(all_values_survive),
     cmocka_unit_test(impossible_tiles_are_refused),
