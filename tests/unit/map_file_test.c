@@ -103,53 +103,6 @@ static void what_is_written_is_read(void **state) {
   assert_int_equal(made_folder_files(1), 1);
 }
 
-/* Maps of depths: flat parts, INFINITY, tiles without any surface, one level. */
-static void depths_are_read_as_written(void **state) {
-  (void)state;
-  int lit = 0, full = 0, cut = 0;
-  for (uint64_t seed = 0; seed < 16; ++seed) {
-    rng r = rng_seeded(seed);
-    made_map m = made_map_random(&r, seed % 2 ? MAX_FACES : 1, seed == 0 ? 900 : 60, MADE_DEPTHS, 0);
-    const char *path = made_path("depths.exr");
-    write_map(path, &m);
-    map_header header;
-    map_file *file = open_map(path, &header);
-    assert_seeded(&r, same_headers(&m.header, &header) && header.block == BLOCK_SHADOW_MAP && header.projection.one_level);
-    dsm_result result = DSM_OK;
-    assert_seeded(&r, made_map_differs(&m, file, &result, &why) == m.parts.tile_count && result == DSM_OK);
-    for (uint64_t i = 0; i < m.parts.tile_count; ++i) {
-      lit += m.tiles[i] == &tile_lit;
-      if (m.tiles[i] != &tile_lit) *(depths_of(m.tiles[i])->most < INFINITY ? &full : &cut) += 1;
-    }
-    map_file_close(file);
-    map_header_free(&header);
-    made_map_free(&m);
-  }
-  assert_true(lit && full && cut);
-  made_folder_files(1);
-}
-
-/* Whatever kind it is of, the file of the other kind is refused, and so is one with other settings of the bake. */
-static void kinds_are_told_apart(void **state) {
-  (void)state;
-  rng r = rng_seeded(1);
-  map_header deep = random_header(&r, 1, 20, MADE_GREY), depths = deep, other;
-  depths.block = BLOCK_SHADOW_MAP;
-  depths.samples = 77;   /* of the look-up, here */
-  other = depths;
-  assert_int_equal(map_header_compare(&depths, &deep, "some.exr", &why), DSM_REFUSED);
-  assert_string_equal(text, "The shadow map \"some.exr\" is that of a deep_shadow block, and cannot be used in a shadow_map block.");
-  assert_int_equal(map_header_compare(&deep, &depths, "some.exr", &why), DSM_REFUSED);
-  assert_string_equal(text, "The shadow map \"some.exr\" is that of a shadow_map block, and cannot be used in a deep_shadow block.");
-  other.samples = 78;
-  other.tolerance = 0.3;
-  assert_int_equal(map_header_compare(&depths, &other, "some.exr", &why), DSM_OK);
-  depths.jittered = !other.jittered;
-  assert_int_equal(map_header_compare(&depths, &other, "some.exr", &why), DSM_REFUSED);
-  assert_non_null(strstr(text, "'depth_samples' was \"" ));
-  map_header_free(&deep);
-}
-
 /* A map of no casters has no tiles. */
 static void an_empty_map(void **state) {
   (void)state;
@@ -609,8 +562,6 @@ static void a_digest_is_a_sha1(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_is_written_is_read),
-    cmocka_unit_test(depths_are_read_as_written),
-    cmocka_unit_test(kinds_are_told_apart),
     cmocka_unit_test(an_empty_map),
     cmocka_unit_test(all_values_survive),
     cmocka_unit_test(impossible_tiles_are_refused),
