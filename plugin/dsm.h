@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 /*
- * dsm.h - deep shadow maps behind one table of C functions.
+ * dsm.h - shadow maps, deep ones and depth maps, behind one table of C functions.
  *
  * A renderer (the *host*) loads this library at run time, finds the one symbol `dsm_api`, and drives it
  * through the table that the symbol holds. The library bakes a map of fractional visibility for one light by
  * asking the host to trace light rays, and answers during shading how much of the light reaches a point.
- * Lokovic & Veach, "Deep Shadow Maps", SIGGRAPH 2000 (LV below), is the method.
+ * Lokovic & Veach, "Deep Shadow Maps", SIGGRAPH 2000 (LV below), is the method. A map can also be a depth map with
+ * percentage closer filtering: Reeves, Salesin & Cook, "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987
+ * (RSC). It is made, kept and asked in the same way, and holds one depth a pixel: where half of the light is gone.
  *
  * RULES
  *
@@ -39,7 +41,7 @@
 extern "C" {
 #endif
 
-#define DSM_ABI 2u
+#define DSM_ABI 3u
 
 typedef int32_t dsm_result;
 enum {
@@ -54,7 +56,7 @@ enum {
   DSM_DONE = 7        /* bake_next: no tile is left to take */
 };
 
-/* ---- Settings: the words of a deep_shadow { } block ---------------------------------------------------- */
+/* ---- Settings: the blocks that a light can have, and their words ----------------------------------------- */
 
 typedef enum {
   DSM_NUMBERS,  /* `min_count` to `max_count` numbers */
@@ -62,7 +64,7 @@ typedef enum {
   DSM_TEXT      /* a string that is not empty: the name of a file */
 } dsm_type;
 
-/* One row of the published table. Parser, documentation and tools all read this and nothing else. */
+/* One row of a published table. Parser, documentation and tools all read this and nothing else. */
 typedef struct {
   const char *name;
   dsm_type type;
@@ -74,6 +76,13 @@ typedef struct {
   const char *default_text;      /* as the documentation prints it */
   const char *meaning;           /* one line */
 } dsm_parameter;
+
+/* A kind of map, by the block that asks for it. */
+typedef struct {
+  const char *name;                  /* "deep_shadow": a deep map; "shadow_map": a depth map */
+  const dsm_parameter *parameters;
+  uint32_t parameter_count;
+} dsm_block;
 
 typedef struct dsm_settings dsm_settings;
 
@@ -158,7 +167,7 @@ typedef struct {
   uint64_t pixels, pixels_baked, pixels_marked, pixels_coloured;
   uint64_t rays, events, events_dropped, events_clamped;
   uint64_t vertices_in;    /* of all averaged visibility functions, before compression */
-  uint64_t vertices;       /* stored */
+  uint64_t vertices;       /* stored; of a depth map, its finite depths */
   uint64_t bytes;          /* held by tiles now, bookkeeping included */
   uint64_t bytes_most;     /* the most that tiles have held at a time */
   uint64_t tiles_read;     /* from a file */
@@ -166,6 +175,7 @@ typedef struct {
   double near_depth, far_depth;
   double bake_seconds;     /* of all workers, host's tracing included */
   double trace_seconds;    /* the part of bake_seconds spent in host->trace */
+  uint64_t samples;        /* depth maps: compared by all look-ups; zero for others */
 } dsm_statistics;
 
 typedef struct {
@@ -173,12 +183,13 @@ typedef struct {
   uint32_t size;   /* of this table, in bytes */
   const char *version;
 
-  const dsm_parameter *parameters;   /* [any] */
-  uint32_t parameter_count;
+  const dsm_block *blocks;   /* [any] */
+  uint32_t block_count;
 
-  /* Settings start at their defaults. settings_set checks against the table and returns DSM_INVALID, with a
-   * sentence that names the word and its range, without changing anything. `parameter` is an index. */
-  dsm_settings *(*settings_create)(void);                                     /* [any] NULL: out of memory */
+  /* Settings start at the defaults of their block, an index, and make a map of its kind. settings_set checks against the
+   * block's table and returns DSM_INVALID, with a sentence that names the word and its range, without changing anything.
+   * `parameter` is an index into that table. */
+  dsm_settings *(*settings_create)(uint32_t block);         /* [any] NULL: out of memory, or there is no such block */
   dsm_result (*settings_set)(dsm_settings *settings, uint32_t parameter, const char *choice,
                              const double *numbers, uint32_t count, char *why, uint64_t why_size); /* [one] */
   /* What a DSM_TEXT parameter was set to, NULL if it was not. Lives as long as the settings. */
@@ -195,8 +206,9 @@ typedef struct {
   void (*worker_destroy)(dsm_worker *worker);                                 /* [one] */
 
   /* How much light reaches the receiver: `rgb` in [0,1], 1 is unshadowed. Bakes the tiles it needs, or waits for
-   * the thread that does. Filters the map over the pixels around the point (LV 3.4). `rgb` is set when the
-   * result is DSM_OK or DSM_OUTSIDE and untouched otherwise. */
+   * the thread that does. A deep map is filtered over the pixels around the point (LV 3.4). Of a depth map a number of
+   * pixels around the point are compared, at places that are a hash of the point (RSC figure 4); it knows nothing of planes, and
+   * all of `rgb` is one number. `rgb` is set when the result is DSM_OK or DSM_OUTSIDE and untouched otherwise. */
   dsm_result (*lookup)(dsm_worker *worker, const dsm_receiver *receiver, double rgb[3]);        /* [one] */
 
   void (*statistics)(const dsm_map *map, dsm_statistics *out);                /* [any] out->size set by the caller */

@@ -3,24 +3,28 @@
 
 #include <stdlib.h>
 
+#include "bake/bake_depth.h"
 #include "bake/bake_tile.h"
 
 typedef struct {
   tile_maker maker;   /* first: a tile_maker of ours is the baker that begins with it */
   bake_job job;
   bake_scratch scratch;
+  depth_scratch depths;   /* in its place, for a map of depths */
 } baker;
 
 static dsm_result make(tile_maker *maker, const tile_key *key, const tile **out, tile_tally *tally)
 {
   baker *b = (baker *)maker;
-  return bake_tile(&b->job, &b->scratch, key, out, tally);
+  return b->job.settings->block == BLOCK_SHADOW_MAP ? bake_depth(&b->job, &b->depths, key, out, tally)
+                                                    : bake_tile(&b->job, &b->scratch, key, out, tally);
 }
 
 static void destroy(tile_maker *maker)
 {
   baker *b = (baker *)maker;
   bake_scratch_free(&b->scratch);
+  depth_scratch_free(&b->depths);
   free(b);
 }
 

@@ -276,6 +276,7 @@ void face_fit(const dsm_light *light, const dsm_settings *settings, projection *
   memset(out, 0, sizeof *out);
   memcpy(out->origin, light->origin, sizeof out->origin);
   out->perspective = light->kind != DSM_LIGHT_PARALLEL;
+  out->one_level = settings->block == BLOCK_SHADOW_MAP;
   if (light->caster_count == 0)
     return;
   wish w = {light, settings->bounded ? &settings->bounds : NULL, settings->resolution,

@@ -5,30 +5,14 @@
 
 static const double PIXEL = 1.0 / 12;   /* variance of a pixel of the finest level */
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* A side in pixels: the derivative of the projection at the point, times the side. */
-static void side_in_pixels(const projection *p, const projected *at, const double side[3], double out[2])
-{
-  const face *f = &p->faces[at->face];
-  double u = dot(side, f->axes.right), v = dot(side, f->axes.up);
-  if (p->perspective) {
-    double z = at->depth / sqrt(1 + at->u * at->u + at->v * at->v), along = dot(side, f->axes.forward);
-    u = (u - at->u * along) / z;
-    v = (v - at->v * along) / z;
-  }
-  out[0] = u * f->per_u;
-  out[1] = v * f->per_v;
-}
-
 void spread_add(spread *sum, const projection *p, const projected *at, const double sides[2][3])
 {
+  const face *f = &p->faces[at->face];
   for (int i = 0; i < 2; i++) {
     double s[2];
-    side_in_pixels(p, at, sides[i], s);
+    projection_side(p, at, sides[i], s);
+    s[0] *= f->per_u;
+    s[1] *= f->per_v;
     sum->xx += s[0] * s[0] / 12;
     sum->xy += s[0] * s[1] / 12;
     sum->yy += s[1] * s[1] / 12;

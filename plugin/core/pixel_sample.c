@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/hash.h"
+
 static uint32_t reverse_bits(uint32_t x)
 {
   x = (x >> 16) | (x << 16);
@@ -36,16 +38,9 @@ static uint32_t scramble(uint32_t reversed, uint32_t seed)
   return reverse_bits(x);
 }
 
-static uint64_t mix(uint64_t x)   /* the finaliser of splitmix64 */
-{
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
 pixel_seed pixel_sample_seed(uint32_t face, uint32_t x, uint32_t y)
 {
-  uint64_t h = mix(mix((uint64_t)face + 0x9e3779b97f4a7c15u) ^ ((uint64_t)x << 32 | y));
+  uint64_t h = hash_mix(hash_mix((uint64_t)face + 0x9e3779b97f4a7c15u) ^ ((uint64_t)x << 32 | y));
   return (pixel_seed){(uint32_t)h, (uint32_t)(h >> 32)};
 }
 
@@ -72,9 +67,8 @@ static double normal_inverse(double p)
   return p < 0.5 ? x : -x;
 }
 
-/* The filter's inverse distribution function on a support of ±1. The gaussian is RenderMan's, exp(-2 x^2): two
- * standard deviations, cut at the support. */
-static double filter_inverse(filter_kind kind, double u)
+/* The gaussian is RenderMan's, exp(-2 x^2): two standard deviations, cut at the support. */
+double pixel_filter_inverse(filter_kind kind, double u)
 {
   static const double cut = 0.022750131948179195;   /* of the normal distribution, below -2 */
   switch (kind) {
@@ -92,8 +86,8 @@ void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, pixel_poin
 {
   double u = ((double)scramble(point.x, seed.x) + 0.5) * 0x1p-32;
   double v = ((double)scramble(point.y, seed.y) + 0.5) * 0x1p-32;
-  offset[0] = 0.5 * filter->width * filter_inverse(filter->kind, u);
-  offset[1] = 0.5 * filter->width * filter_inverse(filter->kind, v);
+  offset[0] = 0.5 * filter->width * pixel_filter_inverse(filter->kind, u);
+  offset[1] = 0.5 * filter->width * pixel_filter_inverse(filter->kind, v);
 }
 
 static uint64_t spread_bits(uint32_t value)   /* a zero between any two bits */

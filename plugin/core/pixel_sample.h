@@ -27,4 +27,7 @@ pixel_seed pixel_sample_seed(uint32_t face, uint32_t x, uint32_t y);
 /* Offset of a point from the pixel's centre in map pixels, within ± width/2. */
 void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, pixel_point point, double offset[2]);
 
+/* A filter's inverse distribution function on a support of ±1, for u in [0,1]. */
+double pixel_filter_inverse(filter_kind kind, double u);
+
 #endif

@@ -127,3 +127,15 @@ void projection_ray(const projection *p, uint32_t index, double x, double y, dsm
       ray->direction[i] = f->axes.forward[i];
     }
 }
+
+void projection_side(const projection *p, const projected *at, const double side[3], double out[2])
+{
+  const face *f = &p->faces[at->face];
+  out[0] = dot(side, f->axes.right);
+  out[1] = dot(side, f->axes.up);
+  if (!p->perspective)
+    return;
+  double z = at->depth / sqrt(1 + at->u * at->u + at->v * at->v), along = dot(side, f->axes.forward);
+  out[0] = (out[0] - at->u * along) / z;
+  out[1] = (out[1] - at->v * along) / z;
+}

@@ -51,9 +51,17 @@ typedef struct {
   frame axes;            /* of a cube; the faces look along ±forward, ±right, ±up */
   int perspective;
   uint32_t count;        /* of faces: 0, 1 or 6 */
+  int one_level;         /* there are no coarser ones: depths cannot be averaged */
   double overlap;        /* cube: tangents beyond 1 within which a neighbour's face answers too */
   face faces[MAX_FACES];
 } projection;
+
+/* Levels that the map has of a face. */
+static inline uint32_t projection_levels(const projection *p, uint32_t face_index)
+{
+  const face *f = &p->faces[face_index];
+  return p->one_level ? f->width > 0 : face_levels(f);
+}
 
 /* A point as one face sees it. */
 typedef struct {
@@ -71,6 +79,10 @@ uint32_t projection_find(const projection *p, const double point[3], double reac
 
 /* The light ray through pixel coordinates x, y of a face that has pixels. */
 void projection_ray(const projection *p, uint32_t face, double x, double y, dsm_ray *ray);
+
+/* A vector at the point `at`, as the face's frame sees it: u, v in tangents or scene units. It is the derivative of the
+ * projection there, times the vector. */
+void projection_side(const projection *p, const projected *at, const double side[3], double out[2]);
 
 /* An orthonormal frame that looks along `forward` (unit length), with `up` near the y axis where it can. */
 frame frame_along(const double forward[3]);

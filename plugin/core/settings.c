@@ -8,29 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const dsm_parameter settings_table[WORD_COUNT] = {
-  [WORD_RESOLUTION] = {"resolution", DSM_NUMBERS, 1, 2, 1, 1, 16384, 0, 0, NULL, "512",
-    "map pixels of a face: along its longer side, or <across, up>"},
-  [WORD_SAMPLES] = {"samples", DSM_NUMBERS, 1, 1, 1, 1, 4096, 0, 0, NULL, "16",
-    "rays traced for a map pixel"},
-  [WORD_TOLERANCE] = {"tolerance", DSM_NUMBERS, 1, 1, 0, 0, 0.5, 0, 1, NULL, "automatic",
-    "largest error of visibility, at any depth, that compression may add"},
-  [WORD_FILTER] = {"filter", DSM_CHOICE, 0, 1, 0, 0, 16, 1, 0, "box triangle gaussian", "\"box\", 1",
-    "filter of a map pixel and its full width in map pixels"},
-  [WORD_BLUR] = {"blur", DSM_NUMBERS, 1, 1, 0, 0, 1, 0, 0, NULL, "0",
-    "width of an extra filter of the look-up, as a share of the map"},
-  [WORD_BIAS] = {"bias", DSM_NUMBERS, 1, 1, 0, 0, DBL_MAX, 0, 0, NULL, "automatic",
-    "scene units by which a surface is moved toward the light before its shadow is looked up"},
-  [WORD_BOUNDS] = {"bounds", DSM_NUMBERS, 6, 6, 0, -1e150, 1e150, 0, 0, NULL, "none",
-    "two corners of a box that the map holds in any case: maps of moving objects then share one frame"},
-  [WORD_SAVE_FILE] = {"save_file", DSM_TEXT, 0, 0, 0, 0, 0, 0, 0, NULL, "none",
-    "bake the whole map first, and write it to this file"},
-  [WORD_LOAD_FILE] = {"load_file", DSM_TEXT, 0, 0, 0, 0, 0, 0, 0, NULL, "none",
-    "read the map from this file instead of baking it"},
-  [WORD_CACHE] = {"cache", DSM_NUMBERS, 1, 1, 0, 0, 1e9, 1, 0, NULL, "1024",
-    "megabytes that the map's tiles may hold in memory"},
-};
-
 /* Widths in map pixels where a scene names a filter without one: a box tiles the map, the others overlap by
  * half, as RenderMan's 2 x 2 default. */
 static const double default_width[] = { [FILTER_BOX] = 1, [FILTER_TRIANGLE] = 2, [FILTER_GAUSSIAN] = 2 };
@@ -42,10 +19,26 @@ void settings_defaults(dsm_settings *settings)
     .cache = 1024 };
 }
 
-dsm_settings *settings_create(void)
+/* RSC use 16 samples, a factor of 2 to 4, and at least 2 or 3 samples and 2 pixels along a side (4.2). */
+void settings_shadow_map_defaults(dsm_settings *settings)
 {
-  dsm_settings *settings = malloc(sizeof *settings);
-  if (settings)
+  settings_defaults(settings);
+  settings->block = BLOCK_SHADOW_MAP;
+  settings->resolution[0] = 1024;
+  settings->min_samples = 3;
+  settings->size_factor = 3;
+  settings->min_size = 2;
+  settings->depth_bias[0] = settings->depth_bias[1] = SETTING_AUTOMATIC;
+}
+
+dsm_settings *settings_create(uint32_t block)
+{
+  dsm_settings *settings = block < BLOCK_COUNT ? malloc(sizeof *settings) : NULL;
+  if (!settings)
+    return NULL;
+  if (block == BLOCK_SHADOW_MAP)
+    settings_shadow_map_defaults(settings);
+  else
     settings_defaults(settings);
   return settings;
 }
@@ -59,15 +52,16 @@ void settings_destroy(dsm_settings *settings)
   free(settings);
 }
 
-static char **text_of(dsm_settings *settings, uint32_t parameter)
+static char **text_of(dsm_settings *settings, uint32_t word)
 {
-  return parameter == WORD_SAVE_FILE ? &settings->save_file
-       : parameter == WORD_LOAD_FILE ? &settings->load_file : NULL;
+  return word == WORD_SAVE_FILE ? &settings->save_file : word == WORD_LOAD_FILE ? &settings->load_file : NULL;
 }
 
 const char *settings_text(const dsm_settings *settings, uint32_t parameter)
 {
-  char **text = settings ? text_of((dsm_settings *)(size_t)settings, parameter) : NULL;
+  if (!settings || parameter >= settings_blocks[settings->block].parameter_count)
+    return NULL;
+  char **text = text_of((dsm_settings *)(size_t)settings, settings_word(settings->block, parameter));
   return text ? *text : NULL;
 }
 
@@ -202,21 +196,10 @@ static dsm_box box_between(const double corners[6])
   return b;
 }
 
-dsm_result settings_set(dsm_settings *settings, uint32_t parameter, const char *choice, const double *numbers,
-                        uint32_t count, char *text, uint64_t text_size)
+/* What has been checked. */
+static void apply(dsm_settings *settings, uint32_t word, int chosen, const double *numbers, uint32_t count)
 {
-  sentence why = {text, text_size, 0};
-  if (text && text_size)
-    text[0] = '\0';
-  if (!settings || parameter >= WORD_COUNT) {
-    say(&why, "There is no parameter number %u.", (unsigned)parameter);
-    return DSM_INVALID;
-  }
-  int chosen = 0;
-  dsm_result result = check(&settings_table[parameter], choice, numbers, count, &chosen, &why);
-  if (result != DSM_OK)
-    return result;
-  switch (parameter) {
+  switch (word) {
     case WORD_RESOLUTION:
       settings->resolution[0] = (uint32_t)numbers[0];
       settings->resolution[1] = count > 1 ? (uint32_t)numbers[1] : 0;
@@ -244,9 +227,46 @@ dsm_result settings_set(dsm_settings *settings, uint32_t parameter, const char *
     case WORD_CACHE:
       settings->cache = numbers[0];
       break;
-    case WORD_SAVE_FILE:
-    case WORD_LOAD_FILE:
-      return set_text(text_of(settings, parameter), choice, &why);
+    case WORD_MIN_SAMPLES:
+      settings->min_samples = (uint32_t)numbers[0];
+      break;
+    case WORD_SIZE_FACTOR:
+      settings->size_factor = numbers[0];
+      break;
+    case WORD_MIN_SIZE:
+      settings->min_size = numbers[0];
+      break;
+    case WORD_DEPTH_BIAS:
+      settings->depth_bias[0] = numbers[0];
+      settings->depth_bias[1] = numbers[count - 1];
+      break;
+    case WORD_DEPTH_SAMPLES:
+      settings->jittered = chosen;
+      break;
+    case WORD_PATTERN:
+      settings->pattern = (sample_pattern)chosen;
+      break;
   }
+}
+
+dsm_result settings_set(dsm_settings *settings, uint32_t parameter, const char *choice, const double *numbers,
+                        uint32_t count, char *text, uint64_t text_size)
+{
+  sentence why = {text, text_size, 0};
+  if (text && text_size)
+    text[0] = '\0';
+  if (!settings || parameter >= settings_blocks[settings->block].parameter_count) {
+    say(&why, "There is no parameter number %u.", (unsigned)parameter);
+    return DSM_INVALID;
+  }
+  int chosen = 0;
+  dsm_result result = check(&settings_blocks[settings->block].parameters[parameter], choice, numbers, count, &chosen, &why);
+  if (result != DSM_OK)
+    return result;
+  uint32_t word = settings_word(settings->block, parameter);
+  char **text_place = text_of(settings, word);
+  if (text_place)
+    return set_text(text_place, choice, &why);
+  apply(settings, word, chosen, numbers, count);
   return DSM_OK;
 }

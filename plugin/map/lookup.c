@@ -3,6 +3,7 @@
 
 #include "core/footprint.h"
 #include "core/receiver_depth.h"
+#include "map/depth_lookup.h"
 
 /* One face's view of the receiver, and what it takes from the light. */
 typedef struct {
@@ -277,7 +278,7 @@ dsm_result map_lookup(dsm_worker *worker, const dsm_receiver *receiver, double o
   if (receiver->plane_count > 2 || !all_finite(receiver))
     return DSM_INVALID;
   worker_enter(worker);
-  dsm_result result = look_up(worker, receiver, out);
+  dsm_result result = map_has_depths(worker->map) ? depth_look_up(worker, receiver, out) : look_up(worker, receiver, out);
   worker_leave(worker);
   return result;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* How much light reaches a receiver: the four pixels around it, each read at its own biased depth (LV 3.4). */
+/* How much light reaches a receiver. By a deep map: the four pixels around it, each read at its own biased depth (LV 3.4). By
+ * a map of depths: see depth_lookup.h. */
 #ifndef DSM_MAP_LOOKUP_H
 #define DSM_MAP_LOOKUP_H
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/face_fit.h"
+#include "map/worker.h"
 
 /* A filter's support is enlarged by this before the receiver's plane is searched for its nearest depth:
  * receivers are rarely quite flat, and an eighth of a pixel on each side costs a contact shadow nothing
@@ -243,6 +244,7 @@ void map_statistics(const dsm_map *map, dsm_statistics *out)
   s.bytes_most = bookkeeping + map->store.cache.bytes_most;
   s.bake_seconds = map->tally.bake_seconds;
   s.trace_seconds = map->tally.trace_seconds;
+  s.samples = map->samples + worker_samples(map->workers);
   pthread_mutex_unlock(mutex);
 
   s.size = out->size < sizeof s ? out->size : (uint32_t)sizeof s;

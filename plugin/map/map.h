@@ -44,7 +44,15 @@ struct dsm_map {
   uint64_t tiles_baked, tiles_failed, tiles_read;
   uint64_t next_tile;      /* see whole_map.h */
   int told_bad_events, told_failure, told_full;
+  struct dsm_worker *workers;
+  uint64_t samples;        /* compared by those who have left */
 };
+
+/* Whether it holds depths, not visibility. */
+static inline int map_has_depths(const dsm_map *map)
+{
+  return map->settings.block == BLOCK_SHADOW_MAP;
+}
 
 /* Published; see dsm.h. */
 dsm_result map_create(const dsm_host *host, const dsm_light *light, const dsm_settings *settings,

@@ -32,7 +32,8 @@ typedef struct {
 
 typedef enum { TILE_STORED, TILE_LIT, TILE_FAILED } tile_kind;
 
-enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4 };   /* what of the optional parts a tile has */
+enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4,   /* what of the optional parts a tile has */
+       TILE_DEPTHS = 8 };                                    /* alone: no visibility at all, see depth_tile.h */
 
 typedef struct {
   double near_depth;      /* scene units from the light */

@@ -28,10 +28,12 @@ static int create_locks(tile_store *store)
   return ok;
 }
 
-static void lay_grid(tile_store *store, const face *f, tile_grid *grid, uint32_t level)
+static void lay_grid(tile_store *store, const projection *p, uint32_t face_index, uint32_t level)
 {
+  const face *f = &p->faces[face_index];
+  tile_grid *grid = &store->grids[face_index][level];
   grid->first = store->tile_count;
-  if (level >= face_levels(f))
+  if (level >= projection_levels(p, face_index))
     return;
   grid->across = tiles_for(level_pixels(f->width, level));
   grid->up = tiles_for(level_pixels(f->height, level));
@@ -46,7 +48,7 @@ dsm_result tile_store_create(tile_store *store, const projection *p, uint64_t bu
   store->face_count = p->count;
   for (uint32_t level = 0; level < MAX_LEVELS; level++)
     for (uint32_t i = 0; i < p->count; i++)
-      lay_grid(store, &p->faces[i], &store->grids[i][level], level);
+      lay_grid(store, p, i, level);
   if (tile_cache_create(&store->cache, store->tile_count, budget) != DSM_OK)
     return DSM_NO_MEMORY;
   for (uint32_t level = 0; level < MAX_LEVELS; level++)

@@ -16,17 +16,43 @@ dsm_result worker_create(dsm_map *map, void *host_data, tile_maker *maker, dsm_w
   worker->host_data = host_data;
   worker->maker = maker;
   dsm_result result = tile_store_join(&map->store, &worker->holder);
-  if (result == DSM_OK)
-    *out = worker;
-  else
+  if (result != DSM_OK) {
     free(worker);
-  return result;
+    return result;
+  }
+  pthread_mutex_lock(&map->store.mutex);
+  worker->next = map->workers;
+  map->workers = worker;
+  pthread_mutex_unlock(&map->store.mutex);
+  *out = worker;
+  return DSM_OK;
+}
+
+uint64_t worker_samples(const dsm_worker *worker)
+{
+  uint64_t sum = 0;
+  for (; worker; worker = worker->next)
+    sum += atomic_load_explicit(&worker->samples, memory_order_relaxed);
+  return sum;
+}
+
+static void leave_map(dsm_worker *worker)
+{
+  dsm_map *map = worker->map;
+  pthread_mutex_lock(&map->store.mutex);
+  map->samples += atomic_load_explicit(&worker->samples, memory_order_relaxed);
+  dsm_worker **link = &map->workers;
+  while (*link != worker)
+    link = &(*link)->next;
+  *link = worker->next;
+  pthread_mutex_unlock(&map->store.mutex);
 }
 
 void worker_destroy(dsm_worker *worker)
 {
   if (!worker)
     return;
+  leave_map(worker);
   tile_store_leave(&worker->map->store, &worker->holder);
   if (worker->maker)
     worker->maker->destroy(worker->maker);

@@ -25,11 +25,22 @@ struct dsm_worker {
   uint32_t depth;      /* of worker_enter */
   int baking;          /* a host must not look up with a worker whose tile it traces; it is told to trace */
   uint32_t hints[HINT_SIDE * HINT_SIDE];
+  struct dsm_worker *next;   /* of the map's; under store.mutex */
+  _Atomic uint64_t samples;  /* written by its thread alone; see dsm_statistics */
 };
 
 /* `maker` belongs to the worker if this returns DSM_OK; it may be NULL. */
 dsm_result worker_create(dsm_map *map, void *host_data, tile_maker *maker, dsm_worker **worker);
 void worker_destroy(dsm_worker *worker);
+
+static inline void worker_count_samples(dsm_worker *worker, uint64_t samples)
+{
+  uint64_t before = atomic_load_explicit(&worker->samples, memory_order_relaxed);
+  atomic_store_explicit(&worker->samples, before + samples, memory_order_relaxed);
+}
+
+/* Of this worker and all that follow it. Under store.mutex. */
+uint64_t worker_samples(const dsm_worker *worker);
 
 /* Around every look-up, and whatever else reads tiles. May be nested. */
 static inline void worker_enter(dsm_worker *worker)

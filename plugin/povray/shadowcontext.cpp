@@ -19,7 +19,6 @@ namespace pov
 using namespace pov_base;
 
 ShadowContext::ShadowContext(ShadowMaps& m, ViewData *viewData, ViewThreadData *threadData) :
-	lookUps(0), rayTraced(0),
 	maps(m),
 	events(viewData->GetSceneData(), threadData, viewData->GetQualityFeatureFlags(), m.Casters()),
 	workers(m.Count()),
@@ -30,6 +29,7 @@ ShadowContext::ShadowContext(ShadowMaps& m, ViewData *viewData, ViewThreadData *
 		workers[i].context = this;
 		workers[i].map = i;
 		workers[i].worker = NULL;
+		workers[i].lookUps = workers[i].rayTraced = 0;
 		if(ShadowPlugin::Api().worker_create(maps[i].map.get(), &workers[i], &workers[i].worker) != DSM_OK)
 			throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
 	}
@@ -45,10 +45,10 @@ dsm_result ShadowContext::LookUp(size_t map, const dsm_receiver& receiver, doubl
 {
 	const dsm_result result = ShadowPlugin::Api().lookup(workers[map].worker, &receiver, rgb);
 
-	lookUps++;
+	workers[map].lookUps++;
 	if((result == DSM_OK) || (result == DSM_OUTSIDE))
 		return result;
-	rayTraced++;
+	workers[map].rayTraced++;
 
 	PassOnFailure();
 	if(result == DSM_NO_MEMORY)

@@ -38,7 +38,8 @@ class ShadowContext
 		/// @return                     false if nobody here would pass it on
 		bool Complain(const char *sentence);
 
-		POV_ULONG lookUps, rayTraced;
+		POV_ULONG LookUps(size_t map) const { return workers[map].lookUps; }
+		POV_ULONG RayTraced(size_t map) const { return workers[map].rayTraced; }
 
 		ShadowMaps& Maps() { return maps; }
 
@@ -54,6 +55,7 @@ class ShadowContext
 			ShadowContext *context;
 			size_t map;
 			dsm_worker *worker;
+			POV_ULONG lookUps, rayTraced;
 		};
 
 		ShadowMaps& maps;

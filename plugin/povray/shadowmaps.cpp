@@ -51,6 +51,12 @@ const int kProgressWidth = 48; // on the console, a line overwrites the last one
 /// Without shadows nobody asks for casters, and the base line of every timing must not pay for them.
 const vector<ObjectPtr> kNoObjects;
 
+/// The block whose kind of map every light shall have; empty if each light says so itself.
+string BlockForAll(int method)
+{
+	return (method == kPOVList_ShadowMethod_Deep) ? "deep_shadow" : (method == kPOVList_ShadowMethod_Map) ? "shadow_map" : "";
+}
+
 /// Whether fog dims light by one factor a length, so that it can be multiplied in at the look-up.
 bool FogMultiplies(const FOG *fog)
 {
@@ -81,7 +87,7 @@ void Describe(const LightSource& light, const vector<dsm_box>& casters, dsm_ligh
 shared_ptr<ShadowMaps> ShadowMaps::New(ViewData *viewData, int method, int threadCount, vector<ViewThreadData *>& threads)
 {
 	const SceneData& scene = *viewData->GetSceneData();
-	const bool wanted = (method == kPOVList_ShadowMethod_None) || (method == kPOVList_ShadowMethod_Deep) ||
+	const bool wanted = (method == kPOVList_ShadowMethod_None) || !BlockForAll(method).empty() ||
 	                    ((method == kPOVList_ShadowMethod_Scene) && !scene.shadowSettings.empty());
 
 	return shared_ptr<ShadowMaps>(wanted ? new ShadowMaps(viewData, method, threadCount, threads) : NULL);
@@ -118,7 +124,8 @@ ShadowMaps::~ShadowMaps()
 size_t ShadowMaps::Add(const LightSource& light, int method)
 {
 	const SceneData& scene = *viewData->GetSceneData();
-	const bool wanted = (method == kPOVList_ShadowMethod_Deep) || ((method == kPOVList_ShadowMethod_Scene) && (light.shadowSettings != 0));
+	const string all(BlockForAll(method));
+	const bool wanted = !all.empty() || ((method == kPOVList_ShadowMethod_Scene) && (light.shadowSettings != 0));
 
 	if(!wanted || (light.Light_Type == FILL_LIGHT_SOURCE))
 		return kNone;
@@ -128,8 +135,10 @@ size_t ShadowMaps::Add(const LightSource& light, int method)
 		return kNone;
 	}
 
-	const bool created = (light.shadowSettings != 0) ?
-		Create(light, *scene.shadowSettings[light.shadowSettings - 1]) : Create(light, ShadowSettings());
+	// a block of the other kind has nothing to say
+	const ShadowSettings *own = (light.shadowSettings != 0) ? scene.shadowSettings[light.shadowSettings - 1].get() : NULL;
+	const bool created = ((own != NULL) && (all.empty() || (all == own->Block().name))) ?
+		Create(light, *own) : Create(light, ShadowSettings(all));
 	if(!created)
 		rayTracedLights++;
 	return created ? maps.size() - 1 : kNone;
@@ -183,6 +192,7 @@ bool ShadowMaps::Create(const LightSource& light, const ShadowSettings& settings
 	for(vector<ObjectPtr>::const_iterator i(scene.objects.begin()); i != scene.objects.end() && !entry.photons; i++)
 		entry.photons = IsRefractingTarget(*i, light);
 	entry.atmosphere = light.Media_Interaction && light.Media_Attenuation && ((scene.fog != NULL) || !scene.atmosphere.empty());
+	entry.deep = (string(settings.Block().name) == "deep_shadow");
 	entry.loadPath = settings.loadPath;
 	entry.savePath = settings.savePath;
 	maps.push_back(entry);
@@ -231,7 +241,8 @@ void ShadowMaps::Progress(size_t map, double share, bool saving)
 			count++;
 			number += (i <= map) ? 1 : 0;
 		}
-	stage << (saving ? "Saving deep shadow map " : "Deep shadow map ") << number << " of " << count;
+	const char *kind = maps[map].deep ? (saving ? "deep shadow map" : "Deep shadow map") : (saving ? "shadow map" : "Shadow map");
+	stage << (saving ? "Saving " : "") << kind << " " << number << " of " << count;
 
 	{
 		boost::lock_guard<boost::mutex> lock(bakeMutex);

@@ -25,6 +25,7 @@ struct ShadowMap
 	shared_ptr<dsm_map> map;
 	bool photons;     ///< receivers of photons from this light are ray-traced
 	bool atmosphere;  ///< fog and atmospheric media dim this light, and are multiplied in at the look-up
+	bool deep;        ///< else it holds one depth a pixel
 	string loadPath, savePath; ///< empty: no file
 };
 
@@ -68,6 +69,7 @@ class ShadowMaps
 
 		/// The section for the render statistics; empty if no light has a map.
 		string Statistics() const;
+		string Statistics(bool deep) const;
 
 		static const size_t kNone = static_cast<size_t>(-1);
 	private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Parsing deep_shadow { } in a light_source. Its words come from the shadow library's own table and are matched by
-// their text, so that none of them is reserved.
+// Parsing deep_shadow { } and shadow_map { } in a light_source. The blocks and their words come from the shadow library's own
+// tables and are matched by their text, so that none of them is reserved.
 
 #include <cstring>
 
@@ -23,11 +23,11 @@ using namespace pov_base;
 namespace
 {
 
-string WordList(const dsm_api_table& api)
+string WordList(const dsm_block& block)
 {
 	string list;
-	for(unsigned int row = 0; row < api.parameter_count; row++)
-		list += (row > 0 ? ", " : "") + string(api.parameters[row].name);
+	for(unsigned int row = 0; row < block.parameter_count; row++)
+		list += (row > 0 ? ", " : "") + string(block.parameters[row].name);
 	return list;
 }
 
@@ -45,14 +45,21 @@ string Parser::Shadow_Word()
 /// @return whether it was a shadow block, which has then been read to its end
 bool Parser::Parse_Shadow_Block(LightSource *light)
 {
-	if(Shadow_Word() != "deep_shadow")
+	const string name(Shadow_Word());
+	shared_ptr<ShadowSettings> settings(name.empty() ? NULL : New_Shadow_Settings(name));
+
+	if(settings == NULL)
 		return false;
-
 	if(light->shadowSettings != 0)
-		Error("Only one deep_shadow block allowed per light_source.");
+	{
+		const string other(sceneData->shadowSettings[light->shadowSettings - 1]->Block().name);
 
-	shared_ptr<ShadowSettings> settings(New_Shadow_Settings());
-	const dsm_api_table& api = ShadowPlugin::Api();
+		if(other == name)
+			Error("Only one %s block allowed per light_source.", name.c_str());
+		Error("A light_source can have a %s or a %s block, not both.", other.c_str(), name.c_str());
+	}
+
+	const dsm_block& block = settings->Block();
 	std::set<unsigned int> seen;
 
 	Parse_Begin();
@@ -66,12 +73,12 @@ bool Parser::Parse_Shadow_Block(LightSource *light)
 		}
 
 		const string word(Shadow_Word());
-		const unsigned int row = ShadowSettings::Find(word);
+		const unsigned int row = settings->Find(word);
 
-		if(row == api.parameter_count)
-			Error("'%s' is not a word of deep_shadow. Its words are: %s.", Token.Token_String != NULL ? Token.Token_String : "", WordList(api).c_str());
+		if(row == block.parameter_count)
+			Error("'%s' is not a word of %s. Its words are: %s.", Token.Token_String != NULL ? Token.Token_String : "", block.name, WordList(block).c_str());
 		if(!seen.insert(row).second)
-			Error("'%s' is given twice in one deep_shadow block.", word.c_str());
+			Error("'%s' is given twice in one %s block.", word.c_str(), block.name);
 
 		Parse_Shadow_Parameter(*settings, row);
 	}
@@ -84,14 +91,16 @@ bool Parser::Parse_Shadow_Block(LightSource *light)
 	return true;
 }
 
-/// A block needs the shadow library; without it the parser's error adds file and line to the reason.
-ShadowSettings *Parser::New_Shadow_Settings()
+/// What a light_source does not know may be a block of the shadow library. Without the library, the parser's error adds file
+/// and line to the reason.
+/// @return     NULL if there is no such block
+ShadowSettings *Parser::New_Shadow_Settings(const string& name)
 {
 	string why;
 
 	try
 	{
-		return new ShadowSettings();
+		return (ShadowSettings::FindBlock(name) != NULL) ? new ShadowSettings(name) : NULL;
 	}
 	catch(pov_base::Exception& e)
 	{
@@ -105,7 +114,7 @@ ShadowSettings *Parser::New_Shadow_Settings()
 /// Reads the value of one word: a quoted text, numbers, or both. Commas stand between them; vectors count as numbers.
 void Parser::Parse_Shadow_Parameter(ShadowSettings& settings, unsigned int row)
 {
-	const dsm_parameter& parameter = ShadowPlugin::Api().parameters[row];
+	const dsm_parameter& parameter = settings.Block().parameters[row];
 	vector<double> numbers;
 	string text;
 	bool numbersFollow = (parameter.type == DSM_NUMBERS);
@@ -148,7 +157,7 @@ void Parser::Find_Shadow_Files(ShadowSettings& settings)
 	const string load(settings.Text("load_file")), save(settings.Text("save_file"));
 
 	if(!load.empty() && !save.empty())
-		Error("A deep_shadow block can have a load_file or a save_file, not both.");
+		Error("A %s block can have a load_file or a save_file, not both.", settings.Block().name);
 
 	if(!load.empty())
 	{
@@ -176,12 +185,14 @@ void Parser::Check_Shadow_Block(const LightSource *light)
 	if(light->shadowSettings == 0)
 		return;
 
+	const char *block = sceneData->shadowSettings[light->shadowSettings - 1]->Block().name;
+
 	if(light->Light_Type == FILL_LIGHT_SOURCE)
-		Warning(0, "A shadowless light_source has no shadows; its deep_shadow block is ignored.");
+		Warning(0, "A shadowless light_source has no shadows; its %s block is ignored.", block);
 	else if(light->Area_Light)
-		Warning(0, "An area_light cannot have a deep shadow map yet; its shadows are ray-traced.");
+		Warning(0, "An area_light cannot have a %s yet; its shadows are ray-traced.", (string(block) == "deep_shadow") ? "deep shadow map" : "shadow map");
 	else if(light->Projected_Through_Object != NULL)
-		Warning(0, "A light_source with projected_through cannot have a deep shadow map; its shadows are ray-traced.");
+		Warning(0, "A light_source with projected_through cannot have a %s; its shadows are ray-traced.", (string(block) == "deep_shadow") ? "deep shadow map" : "shadow map");
 }
 
 }

@@ -12,8 +12,13 @@ namespace pov
 
 using namespace pov_base;
 
-ShadowSettings::ShadowSettings() : settings(ShadowPlugin::Api().settings_create())
+ShadowSettings::ShadowSettings(const string& name) : block(FindBlock(name)), settings(NULL)
 {
+	const dsm_api_table& api = ShadowPlugin::Api();
+
+	if(block == NULL)
+		throw POV_EXCEPTION(kParamErr, "Deep shadows: the shadow library has no " + name + ".");
+	settings = api.settings_create(static_cast<uint32_t>(block - api.blocks));
 	if(settings == NULL)
 		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
 }
@@ -32,12 +37,21 @@ string ShadowSettings::Set(unsigned int parameter, const char *choice, const dou
 	return why;
 }
 
-unsigned int ShadowSettings::Find(const string& name)
+const dsm_block *ShadowSettings::FindBlock(const string& name)
 {
 	const dsm_api_table& api = ShadowPlugin::Api();
+
+	for(unsigned int i = 0; i < api.block_count; i++)
+		if(name == api.blocks[i].name)
+			return &api.blocks[i];
+	return NULL;
+}
+
+unsigned int ShadowSettings::Find(const string& word) const
+{
 	unsigned int row = 0;
 
-	while((row < api.parameter_count) && (name != api.parameters[row].name))
+	while((row < block->parameter_count) && (word != block->parameters[row].name))
 		row++;
 	return row;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The settings of one deep_shadow { } block, and how a light names them.
+// The settings of one deep_shadow { } or shadow_map { } block, and how a light names them.
 
 #ifndef POVRAY_BACKEND_SHADOWSETTINGS_H
 #define POVRAY_BACKEND_SHADOWSETTINGS_H
@@ -14,7 +14,8 @@ namespace pov
 class ShadowSettings
 {
 	public:
-		ShadowSettings();
+		/// @param[in]      name        of one of the library's blocks
+		explicit ShadowSettings(const string& name);
 		~ShadowSettings();
 
 		/// @return empty, or a sentence that names the word, the value and the range; nothing is changed then
@@ -22,8 +23,13 @@ class ShadowSettings
 
 		const dsm_settings *Get() const { return settings; }
 
-		/// The row of the published table with this name, or the table's row count.
-		static unsigned int Find(const string& name);
+		const dsm_block& Block() const { return *block; }
+
+		/// The library's block with this name, or NULL.
+		static const dsm_block *FindBlock(const string& name);
+
+		/// The row of the block's table with this name, or the table's row count.
+		unsigned int Find(const string& word) const;
 
 		/// What a word that takes the name of a file was given; empty if nothing.
 		string Text(const char *word) const;
@@ -31,6 +37,7 @@ class ShadowSettings
 		/// Where the two files are; empty: none. The names alone do not tell.
 		string loadPath, savePath;
 	private:
+		const dsm_block *block;
 		dsm_settings *settings;
 
 		ShadowSettings(const ShadowSettings&);

@@ -15,59 +15,99 @@
 namespace pov
 {
 
+namespace
+{
+
+const char kRule[] = "----------------------------------------------------------------------------\n";
+
+/// What all maps of one kind have in common.
+struct Sum
+{
+	dsm_statistics maps;
+	size_t count;
+	POV_ULONG lookUps, rayTraced;
+
+	Sum() : maps(), count(0), lookUps(0), rayTraced(0) { }
+
+	void Add(const dsm_statistics& s)
+	{
+		count++;
+		maps.faces += s.faces;
+		maps.tiles_baked += s.tiles_baked;
+		maps.tiles_failed += s.tiles_failed;
+		maps.pixels += s.pixels;
+		maps.pixels_baked += s.pixels_baked;
+		maps.pixels_marked += s.pixels_marked;
+		maps.pixels_coloured += s.pixels_coloured;
+		maps.rays += s.rays;
+		maps.vertices_in += s.vertices_in;
+		maps.vertices += s.vertices;
+		maps.bytes += s.bytes;
+		maps.bytes_most += s.bytes_most;
+		maps.tiles_read += s.tiles_read;
+		maps.tiles_evicted += s.tiles_evicted;
+		maps.bake_seconds += s.bake_seconds;
+		maps.trace_seconds += s.trace_seconds;
+		maps.samples += s.samples;
+	}
+};
+
+}
+
 string ShadowMaps::Statistics() const
 {
-	dsm_statistics sum = { 0 };
-	POV_ULONG lookUps = 0, rayTraced = 0;
+	return Statistics(true) + Statistics(false);
+}
+
+/// The section on maps of one kind; empty if there is none.
+string ShadowMaps::Statistics(bool deep) const
+{
+	Sum sum;
 	std::ostringstream text;
 
-	if(maps.empty())
-		return string();
-
-	for(vector<ShadowMap>::const_iterator i(maps.begin()); i != maps.end(); i++)
+	for(size_t i = 0; i < maps.size(); i++)
 	{
 		dsm_statistics s = { 0 };
-		s.size = sizeof(s);
-		ShadowPlugin::Api().statistics(i->map.get(), &s);
-		sum.faces += s.faces;
-		sum.tiles += s.tiles;
-		sum.tiles_baked += s.tiles_baked;
-		sum.tiles_failed += s.tiles_failed;
-		sum.pixels += s.pixels;
-		sum.pixels_baked += s.pixels_baked;
-		sum.pixels_marked += s.pixels_marked;
-		sum.pixels_coloured += s.pixels_coloured;
-		sum.rays += s.rays;
-		sum.vertices_in += s.vertices_in;
-		sum.vertices += s.vertices;
-		sum.bytes += s.bytes;
-		sum.bytes_most += s.bytes_most;
-		sum.tiles_read += s.tiles_read;
-		sum.tiles_evicted += s.tiles_evicted;
-		sum.bake_seconds += s.bake_seconds;
-		sum.trace_seconds += s.trace_seconds;
-	}
-	for(vector<shared_ptr<ShadowContext> >::const_iterator i(contexts.begin()); i != contexts.end(); i++)
-	{
-		lookUps += (*i)->lookUps;
-		rayTraced += (*i)->rayTraced;
-	}
 
-	const double baked = max(1.0, double(sum.pixels_baked));
+		if(maps[i].deep != deep)
+			continue;
+		s.size = sizeof(s);
+		ShadowPlugin::Api().statistics(maps[i].map.get(), &s);
+		sum.Add(s);
+		for(vector<shared_ptr<ShadowContext> >::const_iterator k(contexts.begin()); k != contexts.end(); k++)
+		{
+			sum.lookUps += (*k)->LookUps(i);
+			sum.rayTraced += (*k)->RayTraced(i);
+		}
+	}
+	if(sum.count == 0)
+		return string();
+
+	const dsm_statistics& all = sum.maps;
+	const double baked = max(1.0, double(all.pixels_baked));
 	text << std::fixed << std::setprecision(1)
-	     << "Maps:                " << maps.size() << " (" << sum.faces << " faces), ray-traced lights: " << rayTracedLights << "\n"
-	     << "Pixels baked:        " << sum.pixels_baked << " of " << sum.pixels << " (" << 100.0 * sum.pixels_baked / max(1.0, double(sum.pixels)) << " percent), coloured: "
-	     << sum.pixels_coloured << ", marked: " << sum.pixels_marked << "\n"
-	     << "Light rays:          " << sum.rays << "\n"
-	     << std::setprecision(2)
-	     << "Vertices per pixel:  " << sum.vertices / baked << " (before compression " << sum.vertices_in / baked << ")\n"
-	     << "Bytes:               " << sum.bytes << "\n"
-	     << "Look-ups:            " << lookUps << ", ray-traced: " << rayTraced << "\n"
-	     << "Tiles:               " << sum.tiles_baked << " baked, " << sum.tiles_read << " read, " << sum.tiles_evicted
-	     << " given up; most bytes " << sum.bytes_most << "\n"
-	     << "Bake time:           " << sum.bake_seconds << " thread seconds (" << sum.trace_seconds << " tracing light rays)\n";
-	if(sum.tiles_failed > 0)
-		text << "Tiles failed:        " << sum.tiles_failed << "\n";
+	     << kRule << (deep ? "Deep Shadow Maps\n" : "Shadow Maps\n") << kRule
+	     << "Maps:                " << sum.count << " (" << all.faces << " faces), ray-traced lights: " << rayTracedLights << "\n"
+	     << "Pixels baked:        " << all.pixels_baked << " of " << all.pixels << " (" << 100.0 * all.pixels_baked / max(1.0, double(all.pixels)) << " percent)";
+	if(deep)
+		text << ", coloured: " << all.pixels_coloured << ", marked: " << all.pixels_marked;
+	text << "\n"
+	     << "Light rays:          " << all.rays << "\n"
+	     << std::setprecision(2);
+	if(deep)
+		text << "Vertices per pixel:  " << all.vertices / baked << " (before compression " << all.vertices_in / baked << ")\n";
+	else
+		text << "Pixels with a depth: " << all.vertices << "\n";
+	text << "Bytes:               " << all.bytes << "\n"
+	     << "Look-ups:            " << sum.lookUps << ", ray-traced: " << sum.rayTraced << "\n";
+	if(!deep)
+		text << "Samples per look-up: " << all.samples / max(1.0, double(sum.lookUps)) << "\n";
+	text << "Tiles:               " << all.tiles_baked << " baked, " << all.tiles_read << " read, " << all.tiles_evicted
+	     << " given up; most bytes " << all.bytes_most << "\n"
+	     << "Bake time:           " << all.bake_seconds << " thread seconds (" << all.trace_seconds << " tracing light rays)\n";
+	if(all.tiles_failed > 0)
+		text << "Tiles failed:        " << all.tiles_failed << "\n";
+	text << kRule;
 	return text.str();
 }
 

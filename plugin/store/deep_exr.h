@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 /*
- * Deep, tiled OpenEXR files of several parts, through OpenImageIO. This is the C face of what is C++; it knows nothing of
+ * Tiled OpenEXR files of several parts, deep or flat, through OpenImageIO. This is the C face of what is C++; it knows nothing of
  * maps.
  *
  * OpenImageIO takes a third of a second to load, with hundreds of libraries that it depends on, and some of those
@@ -28,6 +28,7 @@ typedef struct {
   uint32_t channel_count;
   const char *channels[DEEP_CHANNELS];
   uint32_t integers;                          /* bit c: channel c holds integers, else floats */
+  uint32_t flat;                              /* not deep: every pixel has one sample. All parts of a file or none */
 } deep_part;
 
 typedef struct { const char *name, *text; } deep_attribute;   /* of the first part; `text` is not empty */

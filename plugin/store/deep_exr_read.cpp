@@ -16,7 +16,9 @@ struct deep_reader
     std::unique_ptr<ImageInput> input;
     ImageSpec first;
     std::vector<std::vector<int>> places;   // of a part's channels in the file
-    DeepData data;                          // kept for its memory
+    bool flat = false;
+    DeepData data;                          // kept for its memory, as is
+    std::vector<uint32_t> pixels;           // a flat tile
 };
 
 deep_reader *DeepOpen(const char *path, deep_error *error)
@@ -52,7 +54,7 @@ const char *DeepAttribute(deep_reader *reader, const char *name)
 static std::vector<int> PlacesOfChannels(const ImageSpec& spec, const deep_part& part)
 {
     std::vector<int> places;
-    bool same = spec.deep && spec.x == 0 && spec.y == 0 && spec.width == int(part.across) * DEEP_SIDE
+    bool same = spec.deep == !part.flat && spec.x == 0 && spec.y == 0 && spec.width == int(part.across) * DEEP_SIDE
              && spec.height == int(part.up) * DEEP_SIDE && spec.depth == 1 && spec.tile_width == DEEP_SIDE
              && spec.tile_height == DEEP_SIDE && spec.nchannels == int(part.channel_count)
              && spec.get_string_attribute("oiio:subimagename") == part.name;
@@ -70,6 +72,7 @@ int DeepHasParts(deep_reader *reader, const deep_part *parts, uint32_t partCount
     deep_error ignored;
     return Guarded(&ignored, 0, [&]() -> int {
         reader->places.clear();
+        reader->flat = partCount > 0 && parts[0].flat;
         for (uint32_t i = 0; i < partCount; i++)
         {
             if (!reader->input->seek_subimage(int(i), 0))
@@ -100,12 +103,33 @@ static bool MakeRoom(deep_tile *tile, size_t words)
     return tile->words != nullptr;
 }
 
+// One sample a pixel, channels in the order of the part's own.
+static int ReadFlat(deep_reader *reader, uint32_t part, int left, int low, deep_tile *tile, deep_error *error)
+{
+    const std::vector<int>& places = reader->places[part];
+    reader->pixels.resize(DEEP_PIXELS * places.size());
+    if (!reader->input->read_native_tiles(int(part), 0, left, left + DEEP_SIDE, low, low + DEEP_SIDE, 0, 1, 0,
+                                          int(places.size()), reader->pixels.data()))
+        return Say(error, reader->input->geterror()), 0;
+    if (!MakeRoom(tile, reader->pixels.size()))
+        return Say(error, "out of memory"), 0;
+    for (size_t p = 0; p < DEEP_PIXELS; p++)
+    {
+        tile->count[p] = 1;
+        for (size_t c = 0; c < places.size(); c++)
+            tile->words[p * places.size() + c] = reader->pixels[p * places.size() + size_t(places[c])];
+    }
+    return 1;
+}
+
 int DeepRead(deep_reader *reader, uint32_t part, uint32_t x, uint32_t y, deep_tile *tile, deep_error *error)
 {
     return Guarded(error, 0, [&]() -> int {
         int left = int(x) * DEEP_SIDE, low = int(y) * DEEP_SIDE;
         DeepData& data = reader->data;
         const std::vector<int>& places = reader->places.at(part);
+        if (reader->flat)
+            return ReadFlat(reader, part, left, low, tile, error);
         if (!reader->input->read_native_deep_tiles(int(part), 0, left, left + DEEP_SIDE, low, low + DEEP_SIDE, 0, 1, 0,
                                                    int(places.size()), data))
             return Say(error, reader->input->geterror()), 0;

@@ -24,7 +24,7 @@ static ImageSpec SpecOf(const deep_part& part, int width, int height)
     spec.full_width = width;
     spec.full_height = height;
     spec.tile_width = spec.tile_height = DEEP_SIDE;
-    spec.deep = true;
+    spec.deep = !part.flat;
     spec.channelnames.assign(part.channels, part.channels + part.channel_count);
     for (uint32_t c = 0; c < part.channel_count; c++)
         spec.channelformats.push_back(part.integers >> c & 1 ? TypeUInt32 : TypeFloat);
@@ -72,6 +72,14 @@ int DeepWrite(deep_writer *writer, uint32_t part, uint32_t x, uint32_t y, const 
             if (!writer->output->open(writer->path, writer->specs[writer->part + 1], ImageOutput::AppendSubimage))
                 return Say(error, writer->output->geterror()), 0;
         const ImageSpec& spec = writer->specs[part];
+        int left = int(x) * DEEP_SIDE, low = int(y) * DEEP_SIDE;
+        if (!spec.deep)
+        {
+            // all channels have 32 bits, and so TypeUnknown, as they are in the file, is as they are here
+            if (!writer->output->write_tile(left, low, 0, TypeUnknown, tile->words))
+                return Say(error, writer->output->geterror()), 0;
+            return 1;
+        }
         DeepData data;
         data.init(DEEP_PIXELS, spec.nchannels, spec.channelformats, spec.channelnames);
         data.set_all_samples(tile->count);
@@ -83,7 +91,6 @@ int DeepWrite(deep_writer *writer, uint32_t part, uint32_t x, uint32_t y, const 
                 memcpy(data.data_ptr(p, 0, 0), words, size * sizeof *words);
             words += size;
         }
-        int left = int(x) * DEEP_SIDE, low = int(y) * DEEP_SIDE;
         if (!writer->output->write_deep_tiles(left, left + DEEP_SIDE, low, low + DEEP_SIDE, 0, 1, data))
             return Say(error, writer->output->geterror()), 0;
         return 1;

@@ -91,6 +91,8 @@ static setting_text text_of(const map_header *h, uint32_t word)
     snprintf(t.text, size, "automatic");
   else if (word == WORD_TOLERANCE)
     snprintf(t.text, size, "%.10g", h->tolerance);
+  else if (word == WORD_DEPTH_SAMPLES)
+    snprintf(t.text, size, h->jittered ? "\"jittered\"" : "\"regular\"");
   else if (word == WORD_FILTER)
     snprintf(t.text, size, "\"%s\", %.10g", filter_words[h->filter], h->filter_width);
   else if (!h->bounded)
@@ -112,21 +114,34 @@ static int same_setting(const map_header *a, const map_header *b, uint32_t word)
       return a->tolerance == b->tolerance || b->scene_count > 1;   /* merging adds to it */
     case WORD_FILTER:
       return a->filter == b->filter && a->filter_width == b->filter_width;
+    case WORD_DEPTH_SAMPLES:
+      return a->jittered == b->jittered;
     default:
       return a->bounded == b->bounded
           && (!a->bounded || (same3(a->bounds.low, b->bounds.low) && same3(a->bounds.high, b->bounds.high)));
   }
 }
 
+/* What the bake depends on. */
+static int is_of_the_bake(block_kind block, uint32_t word)
+{
+  if (word == WORD_SAMPLES)
+    return block == BLOCK_DEEP_SHADOW;
+  return word == WORD_RESOLUTION || word == WORD_TOLERANCE || word == WORD_FILTER || word == WORD_BOUNDS
+      || word == WORD_DEPTH_SAMPLES;
+}
+
 static dsm_result compare_settings(const map_header *is, const map_header *was, const char *path, map_reason *why)
 {
-  static const uint32_t words[] = {WORD_RESOLUTION, WORD_SAMPLES, WORD_TOLERANCE, WORD_FILTER, WORD_BOUNDS};
-  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-    if (!same_setting(is, was, words[i])) {
-      setting_text then = text_of(was, words[i]), now = text_of(is, words[i]);
-      return map_refused(why, "The deep shadow map \"%s\" was made with other settings: '%s' was %s, and is %s.", path,
-                         settings_table[words[i]].name, then.text, now.text);
-    }
+  const dsm_block *block = &settings_blocks[is->block];
+  for (uint32_t i = 0; i < block->parameter_count; i++) {
+    uint32_t word = settings_word(is->block, i);
+    if (!is_of_the_bake(is->block, word) || same_setting(is, was, word))
+      continue;
+    setting_text then = text_of(was, word), now = text_of(is, word);
+    return map_refused(why, "The deep shadow map \"%s\" was made with other settings: '%s' was %s, and is %s.", path,
+                       block->parameters[i].name, then.text, now.text);
+  }
   return DSM_OK;
 }
 
@@ -151,6 +166,9 @@ static dsm_result compare_scene(const map_header *is, const map_header *was, con
 
 dsm_result map_header_compare(const map_header *wanted, const map_header *file, const char *path, map_reason *why)
 {
+  if (wanted->block != file->block)
+    return map_refused(why, "The shadow map \"%s\" is that of a %s block, and cannot be used in a %s block.", path,
+                       settings_blocks[file->block].name, settings_blocks[wanted->block].name);
   dsm_result result = compare_light(&wanted->light, &file->light, path, why);
   if (result == DSM_OK)
     result = compare_settings(wanted, file, path, why);

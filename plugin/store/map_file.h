@@ -12,6 +12,8 @@
  * Row 0 of a part is the lowest one of the face; pixels beyond the face's edge are empty. Z is a depth relative to the tile's
  * near depth. V is visibility, linear between samples, as the multiple of 1/65536 that is nearest to the tile's
  * multiple of 1/65535. Both are exact, so that a map that was read has the same bits as the one that was written.
+ * A map of depths has flat parts instead, "f0", "f1" … and "tiles": Z alone, relative to the tile's near depth, INFINITY where
+ * there is no surface and all over lit tiles; a record for every tile, of lit ones with a tolerance of -1.
  * A marked pixel has one sample, Z = 0 and V = -1. Attributes of the first part ("dsm:…") hold the header. The same map gives
  * the same bytes.
  */

@@ -120,8 +120,8 @@ static dsm_result check_content(map_file *file, uint64_t size, map_header *heade
   dsm_result result = map_header_read(get_attribute, file, file->path, header, why);
   if (result != DSM_OK)
     return result;
-  map_parts_lay(&file->parts, &header->projection, header->coloured);
-  file->channels = header->coloured ? 4 : 2;
+  map_parts_lay(&file->parts, &header->projection, map_header_channels(header));
+  file->channels = map_header_channels(header);
   if (file->parts.tile_count > size / LEAST_TILE)
     result = map_refused(why, "The deep shadow map \"%s\" is damaged or cut off: it is too short for its tiles.", file->path);
   else if (!file->exr->has_parts(file->reader, file->parts.parts, file->parts.count))

@@ -44,10 +44,15 @@ dsm_result map_file_writable(const char *path, map_reason *why)
 static void describe(const map_header *h, char *text, size_t size)
 {
   static const char *const lights[] = {"a point light", "a spotlight", "a parallel light"};
+  const char *light = lights[h->light.kind], *end = h->projection.perspective ? "origin" : "plane";
+  if (h->block == BLOCK_SHADOW_MAP) {
+    snprintf(text, size, "Shadow map of %s: one depth a pixel. Z, infinite where nothing casts a shadow, is counted from the tile's "
+             "near depth, which is in part \"tiles\". Rows run upwards. Depth is the distance from the light's %s.", light, end);
+    return;
+  }
   snprintf(text, size, "Deep shadow map of %s. V (VR, VG, VB) is the share of light left at depth Z, linear between samples and "
            "1 in front of the first; Z is counted from the tile's near depth, which is in part \"tiles\". Rows run "
-           "upwards. Depth is the distance from the light's %s.", lights[h->light.kind],
-           h->projection.perspective ? "origin" : "plane");
+           "upwards. Depth is the distance from the light's %s.", light, end);
 }
 
 static dsm_result open_writer(writing *w, const char *temporary, const map_header *header, const attribute_list *list)
@@ -74,7 +79,7 @@ static dsm_result write_tile(writing *w, uint32_t part, const tile_key *key, con
     return map_refused(w->why, "The deep shadow map \"%s\" is not saved: some of its tiles could not be baked.", w->path);
   w->records[number] = t->kind == TILE_LIT ? record_of_lit : tile_record_of(t, number);
   dsm_result result = DSM_OK;
-  if (t->kind == TILE_LIT)
+  if (t->kind == TILE_LIT && w->channels != DEPTH_CHANNELS)
     memset(w->deep.count, 0, sizeof w->deep.count);
   else
     result = tile_to_deep(t, w->channels, &w->deep);
@@ -144,7 +149,7 @@ static dsm_result check_written(const writing *w, const char *temporary)
 dsm_result map_file_write(const char *path, const map_header *header, map_tile_giver give, void *data,
                           int (*progress)(void *data, double share), map_reason *why)
 {
-  writing w = {.path = path, .why = why, .channels = header->coloured ? 4 : 2};
+  writing w = {.path = path, .why = why, .channels = map_header_channels(header)};
   deep_error error = {""};
   new_file file;
   w.exr = deep_exr_load(&error);
@@ -153,7 +158,7 @@ dsm_result map_file_write(const char *path, const map_header *header, map_tile_g
   dsm_result result = new_file_create(path, &file, why);
   if (result != DSM_OK)
     return result;
-  map_parts_lay(&w.parts, &header->projection, header->coloured);
+  map_parts_lay(&w.parts, &header->projection, w.channels);
   w.records = malloc((w.parts.tile_count + 1) * sizeof *w.records);
   attribute_list list = {NULL, 0, 0};
   result = w.records && map_header_write(header, &list) == DSM_OK ? DSM_OK : map_no_memory(why);

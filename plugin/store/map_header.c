@@ -9,10 +9,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "store/stored_tile.h"
+
 enum { MOST_SCENES = 65536, TEXT = 600 };
 
 static const char *const light_words[] = {"point", "spot", "parallel"};
 static const char *const filter_words[] = {"box", "triangle", "gaussian"};
+static const char *const depth_words[] = {"regular", "jittered"};
+
+uint32_t map_header_channels(const map_header *header)
+{
+  return header->block == BLOCK_SHADOW_MAP ? DEPTH_CHANNELS : header->coloured ? COLOURED_CHANNELS : GREY_CHANNELS;
+}
 
 void map_header_free(map_header *header)
 {
@@ -95,28 +103,42 @@ static dsm_result put_projection(attribute_list *list, const projection *p)
   return result;
 }
 
-static dsm_result put_settings(attribute_list *list, const map_header *h)
+static dsm_result put_deep_settings(attribute_list *list, const map_header *h)
 {
-  dsm_result result = put(list, "dsm:resolution", "%u %u", (unsigned)h->resolution[0], (unsigned)h->resolution[1]);
-  if (result == DSM_OK)
-    result = put(list, "dsm:samples", "%u", (unsigned)h->samples);
+  dsm_result result = put(list, "dsm:samples", "%u", (unsigned)h->samples);
   if (result == DSM_OK)
     result = h->tolerance < 0 ? put(list, "dsm:tolerance", "automatic") : put(list, "dsm:tolerance", N, h->tolerance);
   if (result == DSM_OK)
     result = put(list, "dsm:filter", "%s " N, filter_words[h->filter], h->filter_width);
+  return result;
+}
+
+static dsm_result put_settings(attribute_list *list, const map_header *h)
+{
+  dsm_result result = put(list, "dsm:resolution", "%u %u", (unsigned)h->resolution[0], (unsigned)h->resolution[1]);
+  if (result == DSM_OK)
+    result = h->block == BLOCK_SHADOW_MAP ? put(list, "dsm:depth_samples", "%s", depth_words[h->jittered != 0])
+                                          : put_deep_settings(list, h);
   if (result == DSM_OK)
     result = h->bounded ? put(list, "dsm:bounds", N3 " " N3, THREE(h->bounds.low), THREE(h->bounds.high))
                         : put(list, "dsm:bounds", "none");
   return result;
 }
 
-static dsm_result put_content(attribute_list *list, const map_header *h)
+static dsm_result put_deep_content(attribute_list *list, const map_header *h)
 {
   dsm_result result = put(list, "dsm:colour", "%s", h->coloured ? "yes" : "no");
   if (result == DSM_OK)
     result = put(list, "dsm:vertices", "%llu", (unsigned long long)h->vertices);
   if (result == DSM_OK)
     result = put(list, "dsm:pixels_marked", "%llu", (unsigned long long)h->pixels_marked);
+  return result;
+}
+
+static dsm_result put_content(attribute_list *list, const map_header *h)
+{
+  dsm_result result = h->block == BLOCK_SHADOW_MAP ? put(list, "dsm:depths", "%llu", (unsigned long long)h->vertices)
+                                                   : put_deep_content(list, h);
   if (result == DSM_OK)
     result = put(list, "dsm:scenes", "%u", (unsigned)h->scene_count);
   for (uint32_t i = 0; i < h->scene_count && result == DSM_OK; i++) {
@@ -151,7 +173,10 @@ dsm_result map_header_write(const map_header *header, attribute_list *list)
   *list = (attribute_list){NULL, 0, 0};
   if (!plain_numbers(&style))
     return DSM_NO_MEMORY;
-  dsm_result result = put(list, "dsm:format", "%u", MAP_FORMAT);
+  int depths = header->block == BLOCK_SHADOW_MAP;
+  dsm_result result = put(list, "dsm:format", "%u", depths ? 2u : 1u);
+  if (result == DSM_OK && depths)
+    result = put(list, "dsm:map", "depths");
   if (result == DSM_OK)
     result = put_light(list, &header->light);
   if (result == DSM_OK)
@@ -275,16 +300,12 @@ static int read_projection(const getter *g, projection *p)
   return 1;
 }
 
-static int read_settings(const getter *g, map_header *h)
+static int read_deep_settings(const getter *g, map_header *h)
 {
-  double n[6];
-  if (!read_numbers(text_of(g, "dsm:resolution"), n, 2) || !(n[0] >= 1 && n[0] <= 16384 && n[1] >= 0 && n[1] <= 16384))
+  double samples;
+  if (!read_count(text_of(g, "dsm:samples"), UINT32_MAX, &samples))
     return 0;
-  h->resolution[0] = (uint32_t)n[0];
-  h->resolution[1] = (uint32_t)n[1];
-  if (!read_count(text_of(g, "dsm:samples"), UINT32_MAX, n))
-    return 0;
-  h->samples = (uint32_t)n[0];
+  h->samples = (uint32_t)samples;
   const char *tolerance = text_of(g, "dsm:tolerance"), *filter = text_of(g, "dsm:filter");
   h->tolerance = SETTING_AUTOMATIC;
   if (strcmp(tolerance, "automatic") != 0 && !(read_numbers(tolerance, &h->tolerance, 1) && h->tolerance >= 0))
@@ -293,6 +314,24 @@ static int read_settings(const getter *g, map_header *h)
   if (kind < 0 || !read_numbers(filter + strlen(filter_words[kind]), &h->filter_width, 1) || !(h->filter_width > 0))
     return 0;
   h->filter = (filter_kind)kind;
+  return 1;
+}
+
+static int read_depth_settings(const getter *g, map_header *h)
+{
+  h->jittered = read_word(text_of(g, "dsm:depth_samples"), depth_words, 2);
+  return h->jittered >= 0;
+}
+
+static int read_settings(const getter *g, map_header *h)
+{
+  double n[6];
+  if (!read_numbers(text_of(g, "dsm:resolution"), n, 2) || !(n[0] >= 1 && n[0] <= 16384 && n[1] >= 0 && n[1] <= 16384))
+    return 0;
+  h->resolution[0] = (uint32_t)n[0];
+  h->resolution[1] = (uint32_t)n[1];
+  if (!(h->block == BLOCK_SHADOW_MAP ? read_depth_settings(g, h) : read_deep_settings(g, h)))
+    return 0;
   const char *bounds = text_of(g, "dsm:bounds");
   h->bounded = strcmp(bounds, "none") != 0;
   if (h->bounded && !read_numbers(bounds, n, 6))
@@ -316,13 +355,14 @@ static int read_scene(const char *text, scene_print *scene)
 static int read_content(const getter *g, map_header *h)
 {
   double n;
-  h->coloured = strcmp(text_of(g, "dsm:colour"), "yes") == 0;
-  if (!read_count(text_of(g, "dsm:vertices"), 0x1p53, &n))
+  int depths = h->block == BLOCK_SHADOW_MAP;
+  h->coloured = !depths && strcmp(text_of(g, "dsm:colour"), "yes") == 0;
+  if (!read_count(text_of(g, depths ? "dsm:depths" : "dsm:vertices"), 0x1p53, &n))
     return 0;
   h->vertices = (uint64_t)n;
-  if (!read_count(text_of(g, "dsm:pixels_marked"), 0x1p53, &n))
+  if (!depths && !read_count(text_of(g, "dsm:pixels_marked"), 0x1p53, &n))
     return 0;
-  h->pixels_marked = (uint64_t)n;
+  h->pixels_marked = depths ? 0 : (uint64_t)n;
   if (!read_count(text_of(g, "dsm:scenes"), MOST_SCENES, &n) || n < 1)
     return 0;
   h->scene_count = (uint32_t)n;
@@ -364,6 +404,8 @@ dsm_result map_header_read(const char *(*get)(void *data, const char *name), voi
   number_style style;
   if (!plain_numbers(&style))
     return map_no_memory(why);
+  header->block = strcmp(text_of(&g, "dsm:map"), "depths") == 0 ? BLOCK_SHADOW_MAP : BLOCK_DEEP_SHADOW;
+  header->projection.one_level = header->block == BLOCK_SHADOW_MAP;
   int read = read_light(&g, &header->light) && read_projection(&g, &header->projection) && read_settings(&g, header)
           && read_content(&g, header);
   restore_numbers(&style);

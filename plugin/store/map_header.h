@@ -8,7 +8,7 @@
 #include "store/deep_exr.h"
 #include "store/map_reason.h"
 
-#define MAP_FORMAT 1u   /* grows when an older program would misread a file */
+#define MAP_FORMAT 2u   /* grows when an older program would misread a file. 1: deep maps. 2: maps of depths */
 
 #define DIGEST_CHARS 41   /* a SHA-1 in hexadecimal and its end */
 
@@ -19,21 +19,27 @@ typedef struct {
 } scene_print;
 
 typedef struct {
+  block_kind block;          /* the kind of map */
   dsm_light light;           /* without its casters */
   projection projection;
-  uint32_t resolution[2], samples;
+  uint32_t resolution[2];
+  int jittered;              /* of maps of depths alone; filter, samples, tolerance, colour and marks are of deep ones */
+  uint32_t samples;
   filter_kind filter;
   double filter_width;
   double tolerance;          /* or SETTING_AUTOMATIC */
   int bounded;               /* `bounds` was set */
   dsm_box bounds;
   int coloured;              /* some pixel stores three channels */
-  uint64_t vertices, pixels_marked;
+  uint64_t vertices, pixels_marked;   /* or depths */
   uint32_t scene_count;      /* >= 1 */
   scene_print *scenes;       /* owned */
 } map_header;
 
 void map_header_free(map_header *header);
+
+/* Of the file's parts with pixels; see stored_tile.h. */
+uint32_t map_header_channels(const map_header *header);
 
 /* The header as attributes of a file, "dsm:…", in one fixed order; read back, they give a header with the same bits. */
 typedef struct {

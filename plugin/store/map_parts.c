@@ -29,18 +29,20 @@ static uint32_t tiles_for(uint32_t pixels, uint32_t level)
   return (level_pixels(pixels, level) + TILE_SIDE - 1) / TILE_SIDE;
 }
 
-void map_parts_lay(map_parts *m, const projection *p, int coloured)
+void map_parts_lay(map_parts *m, const projection *p, uint32_t channels)
 {
+  int flat = channels == DEPTH_CHANNELS;
   memset(m, 0, sizeof *m);
   for (uint32_t level = 0; level < MAX_LEVELS; level++)
     for (uint32_t i = 0; i < p->count; i++) {
       const face *f = &p->faces[i];
-      if (level >= face_levels(f))
+      if (level >= projection_levels(p, i))
         continue;
       deep_part *part = &m->parts[m->count];
-      *part = part_with(coloured ? coloured_channels : grey_channels, coloured ? 4 : 2, tiles_for(f->width, level),
-                        tiles_for(f->height, level));
-      snprintf(part->name, sizeof part->name, "f%u.l%u", (unsigned)i, (unsigned)level);
+      *part = part_with(channels == COLOURED_CHANNELS ? coloured_channels : grey_channels, channels,   /* Z is the first */
+                        tiles_for(f->width, level), tiles_for(f->height, level));
+      part->flat = flat;
+      snprintf(part->name, sizeof part->name, flat ? "f%u" : "f%u.l%u", (unsigned)i, (unsigned)level);
       m->part_of[i][level] = m->count;
       m->first[m->count] = m->tile_count;
       m->keys[m->count] = (tile_key){i, level, 0, 0};
@@ -51,6 +53,7 @@ void map_parts_lay(map_parts *m, const projection *p, int coloured)
   uint64_t across = blocks < TABLE_ACROSS ? blocks : TABLE_ACROSS;
   deep_part *table = &m->parts[m->count++];
   *table = part_with(record_channels, RECORD_WORDS, across, (blocks + across - 1) / across);
+  table->flat = flat;
   table->integers = ((1u << RECORD_WORDS) - 1) & ~(1u << TOLERANCE);
   snprintf(table->name, sizeof table->name, "tiles");
 }
@@ -90,13 +93,15 @@ static void put_record(const tile_record *r, uint32_t *word)
   word[CHECKSUM] = r->checksum;
 }
 
-/* 0: no record. */
-static int get_record(const uint32_t *word, tile_record *r)
+/* 0: no record. In a flat table lit tiles have one, too. */
+static int get_record(const uint32_t *word, int flat, tile_record *r)
 {
   r->near_depth = get_double(word);
   r->depth_rounding = get_double(word + 2);
   memcpy(&r->tolerance, word + TOLERANCE, sizeof *word);
   r->checksum = word[CHECKSUM];
+  if (flat && r->near_depth == 0 && r->depth_rounding == 0 && r->tolerance == -1 && r->checksum == 0)
+    return 1;
   return r->near_depth >= 0 && r->near_depth < INFINITY && r->depth_rounding >= 0 && r->depth_rounding < INFINITY
       && r->tolerance >= 0 && r->tolerance <= 1;
 }
@@ -122,11 +127,12 @@ int tile_table_write(const deep_exr *exr, deep_writer *writer, const map_parts *
     for (uint32_t i = 0; i < DEEP_PIXELS; i++) {
       uint64_t number = block * DEEP_PIXELS + i;
       int sealed = number == m->tile_count;
-      deep.count[i] = sealed || (number < m->tile_count && records[number].tolerance >= 0);
+      const tile_record *record = number < m->tile_count ? &records[number] : &record_of_lit;
+      deep.count[i] = sealed || table->flat || record->tolerance >= 0;
       if (sealed)
         put_seal(m->tile_count, seal, word);
       else if (deep.count[i])
-        put_record(&records[number], word);
+        put_record(record, word);
       word += deep.count[i] * RECORD_WORDS;
     }
     if (!exr->write(writer, m->count - 1, (uint32_t)(block % table->across), (uint32_t)(block / table->across), &deep, error))
@@ -141,11 +147,12 @@ static int take_block(const deep_tile *deep, uint64_t first, const map_parts *m,
   const uint32_t *word = deep->words;
   for (uint32_t i = 0; i < DEEP_PIXELS; i++) {
     uint64_t number = first + i;
-    if (deep->count[i] > (number <= m->tile_count) || (number == m->tile_count && deep->count[i] != 1))
+    int flat = m->parts[m->count - 1].flat != 0;
+    if (deep->count[i] > (flat || number <= m->tile_count) || (number == m->tile_count && deep->count[i] != 1))
       return 0;
     if (number < m->tile_count) {
       records[number] = record_of_lit;
-      if (deep->count[i] && !get_record(word, &records[number]))
+      if (deep->count[i] && !get_record(word, flat, &records[number]))
         return 0;
     }
     else if (number == m->tile_count) {

@@ -64,6 +64,8 @@ static map_header header_of(const dsm_map *map, scene_print *scene)
   h.light = map->light;
   h.light.casters = NULL;
   h.light.caster_count = 0;
+  h.block = s->block;
+  h.jittered = s->jittered;
   h.projection = map->projection;
   memcpy(h.resolution, s->resolution, sizeof h.resolution);
   h.samples = s->samples;
@@ -81,7 +83,11 @@ static map_header header_of(const dsm_map *map, scene_print *scene)
 static dsm_settings settings_of(const map_header *h)
 {
   dsm_settings s;
-  settings_defaults(&s);
+  if (h->block == BLOCK_SHADOW_MAP)
+    settings_shadow_map_defaults(&s);
+  else
+    settings_defaults(&s);
+  s.jittered = h->jittered;
   memcpy(s.resolution, h->resolution, sizeof s.resolution);
   s.samples = h->samples;
   s.filter = h->filter;

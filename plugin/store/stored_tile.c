@@ -5,10 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "map/depth_tile.h"
+
 const tile_record record_of_lit = {0, 0, -1, 0};
 
-const char *const grey_channels[2] = {"Z", "V"};
-const char *const coloured_channels[4] = {"Z", "VR", "VG", "VB"};
+const char *const grey_channels[GREY_CHANNELS] = {"Z", "V"};
+const char *const coloured_channels[COLOURED_CHANNELS] = {"Z", "VR", "VG", "VB"};
 
 uint64_t checksum_add(uint64_t sum, const void *bytes, size_t size)
 {
@@ -30,13 +32,15 @@ tile_record tile_record_of(const tile *t, uint64_t number)
   tile_record record = {t->near_depth, t->depth_rounding, t->tolerance, 0};
   uint64_t sum = checksum_add(0, &number, sizeof number);
   sum = checksum_add(sum, &record, offsetof(tile_record, checksum));
-  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+  for (uint32_t i = 0; i < TILE_PIXELS && !tile_has_depths(t); i++) {
     visibility v = tile_visibility(t, i);
     uint32_t shape[3] = {v.count, v.channels, (uint32_t)tile_is_marked(t, i)};
     sum = checksum_add(sum, shape, sizeof shape);
     sum = checksum_add(sum, v.depth, v.count * sizeof *v.depth);
     sum = checksum_add(sum, v.value, (size_t)v.count * v.channels * sizeof *v.value);
   }
+  if (tile_has_depths(t))
+    sum = checksum_add(sum, depths_of(t)->depth, sizeof depths_of(t)->depth);
   record.checksum = (uint32_t)(sum ^ sum >> 32);
   return record;
 }
@@ -94,8 +98,43 @@ static dsm_result make_room(deep_tile *deep, size_t words)
   return deep->words ? DSM_OK : DSM_NO_MEMORY;
 }
 
+static dsm_result depths_to_flat(const tile *t, deep_tile *deep)
+{
+  if (make_room(deep, TILE_PIXELS) != DSM_OK)
+    return DSM_NO_MEMORY;
+  uint32_t *word = deep->words;
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    deep->count[i] = 1;
+    put_float(&word, t->kind == TILE_STORED ? depths_of(t)->depth[i] : INFINITY);
+  }
+  return DSM_OK;
+}
+
+/* Depths are not below 0, and one is 0: that of the near depth. */
+static dsm_result depths_from_flat(const deep_tile *deep, const tile_record *record, uint64_t number, const tile **out)
+{
+  float depth[TILE_PIXELS], least = INFINITY;
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    if (deep->count[i] != 1)
+      return DSM_REFUSED;
+    depth[i] = get_float(&deep->words[i]);
+    least = fminf(least, depth[i]);
+    if (!(depth[i] >= 0))
+      return DSM_REFUSED;
+  }
+  dsm_result result = least == 0 ? depth_tile_unpack(record->near_depth, depth, out) : DSM_REFUSED;
+  if (result == DSM_OK && tile_record_of(*out, number).checksum != record->checksum) {
+    tile_destroy(*out);
+    *out = NULL;
+    result = DSM_REFUSED;
+  }
+  return result;
+}
+
 dsm_result tile_to_deep(const tile *t, uint32_t channels, deep_tile *deep)
 {
+  if (channels == DEPTH_CHANNELS)
+    return depths_to_flat(t, deep);
   size_t samples = 0;
   for (uint32_t i = 0; i < TILE_PIXELS; i++) {
     visibility v = tile_visibility(t, i);
@@ -184,6 +223,8 @@ dsm_result tile_from_deep(const deep_tile *deep, uint32_t channels, const tile_r
 {
   tile_plan plan;
   *out = NULL;
+  if (channels == DEPTH_CHANNELS)
+    return depths_from_flat(deep, record, number, out);
   if (!plan_tile(deep, channels, &plan))
     return DSM_REFUSED;
   tile *t = tile_create(&plan);

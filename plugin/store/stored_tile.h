@@ -18,16 +18,18 @@ typedef struct {
 
 extern const tile_record record_of_lit;
 
-/* Channels of the parts with pixels: Z and V, or Z, VR, VG, VB. */
-extern const char *const grey_channels[2], *const coloured_channels[4];
+/* Channels of the parts with pixels: Z, of a map of depths; Z and V; or Z, VR, VG, VB. */
+enum { DEPTH_CHANNELS = 1, GREY_CHANNELS = 2, COLOURED_CHANNELS = 4 };
+extern const char *const grey_channels[GREY_CHANNELS], *const coloured_channels[COLOURED_CHANNELS];
 
 /* Mixes `size` bytes into a checksum that was `sum` before; begin with 0. Any few bits that differ change the low 32. */
 uint64_t checksum_add(uint64_t sum, const void *bytes, size_t size);
 
 tile_record tile_record_of(const tile *t, uint64_t number);
 
-/* Fills `deep`. DSM_INVALID: a pixel is coloured but there are only two channels, or it is packed as coloured although its
- * channels agree everywhere; DSM_NO_MEMORY. */
+/* Fills `deep`. A map of depths has a sample in every pixel, INFINITY where there is no surface, also of tile_lit. DSM_INVALID:
+ * a pixel is coloured but there are only two channels, or it is packed as coloured although its channels agree
+ * everywhere; DSM_NO_MEMORY. */
 dsm_result tile_to_deep(const tile *t, uint32_t channels, deep_tile *deep);
 
 /* A new tile. DSM_REFUSED: the samples do not make a tile, or are not those of the record; DSM_NO_MEMORY. */

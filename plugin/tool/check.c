@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 /* dsmtool check: reads every tile and says what is wrong with it. */
+#include <math.h>
 #include <stdio.h>
 
+#include "map/depth_tile.h"
 #include "tool/open_map.h"
 
 /* What is wrong with a pixel, or NULL. Who reads a tile sees already that depths never fall, that visibility never grows and
@@ -25,9 +27,15 @@ typedef struct {
 /* What is wrong with one pixel of a tile, or NULL. */
 static const char *wrong_in(const tile *t, uint32_t place, const tile_extent *extent, const face *f)
 {
-  visibility v = tile_visibility(t, place);
   double rounding = 0x1p-20 * (f->far_depth - f->near_depth);   /* depths became floats on their way here */
   int outside = place % TILE_SIDE >= extent->across || place / TILE_SIDE >= extent->up;
+  if (tile_has_depths(t)) {
+    double depth = t->near_depth + (double)depths_of(t)->depth[place];
+    return depth == INFINITY ? NULL : outside ? "has a depth, but lies outside the face"
+         : depth < f->near_depth - rounding ? "has a depth in front of the casters"
+         : depth > f->far_depth + rounding ? "has a depth behind the casters" : NULL;
+  }
+  visibility v = tile_visibility(t, place);
   if (outside && (v.count || tile_is_marked(t, place)))
     return "stores something, but lies outside the face";
   if (v.count && !(t->near_depth >= f->near_depth - rounding))
@@ -77,8 +85,8 @@ static int check_map(tally *sum)
 int check_run(int argc, char **argv)
 {
   static const struct argp parser = {NULL, one_path, "MAP", "Reads every tile of a map, compares it with its checksum, and "
-    "checks that every visibility function starts at 1, stays from 0 to 1 and never grows. Says what is wrong; the exit "
-    "status is 0 where nothing is, else 2.", NULL, NULL, NULL};
+    "checks that every visibility function starts at 1, stays from 0 to 1 and never grows, or that depths are those of "
+    "casters. Says what is wrong; the exit status is 0 where nothing is, else 2.", NULL, NULL, NULL};
   const char *path = NULL;
   parse_arguments(&parser, argc, argv, &path);
   open_map map;

@@ -161,9 +161,9 @@ int diff_run(int argc, char **argv)
   arguments given = {{NULL, NULL}};
   parse_arguments(&parser, argc, argv, &given);
   open_map a = {0}, b = {0};
-  int status = open_map_begin(&a, given.paths[0]);
+  int status = open_map_begin_deep(&a, given.paths[0]);
   if (status == STATUS_FINE)
-    status = open_map_begin(&b, given.paths[1]);
+    status = open_map_begin_deep(&b, given.paths[1]);
   if (status == STATUS_FINE)
     status = compare(&a, &b);
   open_map_end(&a);

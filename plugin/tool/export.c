@@ -150,7 +150,7 @@ int export_run(int argc, char **argv)
   arguments given = {.tolerance = 0.001, .place = {-1, 0}};
   parse_arguments(&parser, argc, argv, &given);
   open_map map;
-  int status = open_map_begin(&map, given.path);
+  int status = open_map_begin_deep(&map, given.path);
   if (status == STATUS_FINE)
     status = run(&map, &given);
   open_map_end(&map);

@@ -77,28 +77,38 @@ static void add_face(list *to, const projection *p, uint32_t index)
   add(to, ABOUT_FRAME, name, "looks along %s, %s is up", VECTOR(f->axes.forward), VECTOR(f->axes.up));
 }
 
-static void add_settings(list *to, const map_header *h)
+static void add_deep_settings(list *to, const map_header *h)
 {
   static const char *const filters[] = {"box", "triangle", "gaussian"};
-  if (h->resolution[1])
-    add(to, ABOUT_SETTINGS, "resolution", "%u x %u", (unsigned)h->resolution[0], (unsigned)h->resolution[1]);
-  else
-    add(to, ABOUT_SETTINGS, "resolution", "%u", (unsigned)h->resolution[0]);
   add(to, ABOUT_SETTINGS, "samples", "%u rays a pixel", (unsigned)h->samples);
   add(to, ABOUT_SETTINGS, "filter", "%s, %s pixels wide", h->filter <= FILTER_GAUSSIAN ? filters[h->filter] : "unknown",
       NUMBER(h->filter_width));
-  if (h->bounded)
-    add(to, ABOUT_SETTINGS, "bounds", "%s, %s", VECTOR(h->bounds.low), VECTOR(h->bounds.high));
   if (h->tolerance < 0)
     add(to, ABOUT_TOLERANCE, "tolerance", "automatic");
   else
     add(to, ABOUT_TOLERANCE, "tolerance", "%s", NUMBER(h->tolerance));
 }
 
+static void add_settings(list *to, const map_header *h)
+{
+  if (h->resolution[1])
+    add(to, ABOUT_SETTINGS, "resolution", "%u x %u", (unsigned)h->resolution[0], (unsigned)h->resolution[1]);
+  else
+    add(to, ABOUT_SETTINGS, "resolution", "%u", (unsigned)h->resolution[0]);
+  if (h->block == BLOCK_DEEP_SHADOW)
+    add_deep_settings(to, h);
+  else
+    add(to, ABOUT_SETTINGS, "samples", h->jittered ? "one ray a pixel, jittered" : "one ray a pixel, through its middle");
+  if (h->bounded)
+    add(to, ABOUT_SETTINGS, "bounds", "%s, %s", VECTOR(h->bounds.low), VECTOR(h->bounds.high));
+}
+
 uint32_t header_lines(const map_header *header, header_line lines[MAX_HEADER_LINES])
 {
   list to = {lines, 0};
   const projection *p = &header->projection;
+  if (header->block == BLOCK_SHADOW_MAP)
+    add(&to, ABOUT_SETTINGS, "map", "shadow_map: one depth a pixel, where half of the light is gone");
   add_light(&to, &header->light);
   add(&to, ABOUT_FRAME, "frame", "%s, %s", p->perspective ? "perspective, depth is the distance from the light"
       : "orthographic, depth is the distance from the light's plane", p->count == MAX_FACES ? "a cube" : "one face");

@@ -120,7 +120,7 @@ static int take_frame(const arguments *given, const image_size *size, map_header
 {
   open_map like;
   map_grid grid;
-  if (open_map_begin(&like, given->like) != STATUS_FINE)
+  if (open_map_begin_deep(&like, given->like) != STATUS_FINE)
     return STATUS_TROUBLE;
   int status = open_map_grid(&like, &given->place, &grid);
   if (status == STATUS_FINE && (grid.width != size->width || grid.height != size->height))

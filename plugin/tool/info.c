@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "tool/header_text.h"
+#include "tool/info_depths.h"
 #include "tool/open_map.h"
 
 enum { BINS = 16 };   /* 0, 1, 2, 3 to 4, 5 to 8, … vertices */
@@ -105,7 +106,8 @@ static void print_header(const open_map *map)
   uint32_t count = header_lines(&map->header, lines);
   struct stat file;
   if (!stat(map->path, &file))
-    printf("%-12s %s, %lld bytes, format %u\n", "file", map->path, (long long)file.st_size, MAP_FORMAT);
+    printf("%-12s %s, %lld bytes, format %u\n", "file", map->path, (long long)file.st_size,
+           open_map_has_depths(map) ? MAP_FORMAT : 1u);
   for (uint32_t i = 0; i < count; i++)
     printf("%-12s %s\n", i && !strcmp(lines[i].name, lines[i - 1].name) ? "" : lines[i].name, lines[i].text);
   for (uint32_t i = 0; i < map->header.scene_count; i++)
@@ -115,6 +117,10 @@ static void print_header(const open_map *map)
 
 static int print_map(const open_map *map)
 {
+  if (open_map_has_depths(map)) {
+    print_header(map);
+    return info_depths(map);
+  }
   level_sum sums[MAX_LEVELS];
   memset(sums, 0, sizeof sums);
   tile_key key = {0, 0, 0, 0};
@@ -141,7 +147,7 @@ static int print_map(const open_map *map)
 
 int info_run(int argc, char **argv)
 {
-  static const struct argp parser = {NULL, one_path, "MAP", "Says in plain words what a deep shadow map is: its light, frame "
+  static const struct argp parser = {NULL, one_path, "MAP", "Says in plain words what a shadow map is: its light, frame "
     "and settings, and for every level its pixels, tiles, vertices and bytes in memory.", NULL, NULL, NULL};
   const char *path = NULL;
   parse_arguments(&parser, argc, argv, &path);

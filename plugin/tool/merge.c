@@ -133,7 +133,7 @@ static int run(const arguments *given)
   if (!maps || !weights || !tiles)
     status = trouble_memory();
   for (; status == STATUS_FINE && opened < given->count; opened++) {
-    status = open_map_begin(&maps[opened], given->paths[opened]);
+    status = open_map_begin_deep(&maps[opened], given->paths[opened]);
     if (status == STATUS_FINE && opened)
       status = check_alike(&maps[0], &maps[opened]);
   }

@@ -18,6 +18,15 @@ int open_map_begin(open_map *map, const char *path)
   return result == DSM_OK ? STATUS_FINE : refuse(result, &why);
 }
 
+int open_map_begin_deep(open_map *map, const char *path)
+{
+  int status = open_map_begin(map, path);
+  if (status != STATUS_FINE || !open_map_has_depths(map))
+    return status;
+  open_map_end(map);
+  return trouble("%s is a shadow_map, with one depth a pixel; this command knows only deep shadow maps.", path);
+}
+
 void open_map_end(open_map *map)
 {
   if (!map->file)
@@ -43,7 +52,7 @@ static uint32_t tiles_for(uint32_t pixels)
 int map_grid_of(const projection *p, uint32_t face_index, uint32_t level, map_grid *grid)
 {
   const face *f = &p->faces[face_index];
-  if (face_index >= p->count || level >= face_levels(f))
+  if (face_index >= p->count || level >= projection_levels(p, face_index))
     return 0;
   uint32_t width = level_pixels(f->width, level), height = level_pixels(f->height, level);
   *grid = (map_grid){face_index, level, width, height, tiles_for(width), tiles_for(height)};
@@ -63,7 +72,7 @@ int open_map_grid(const open_map *map, const place_choice *choice, map_grid *gri
     return trouble("%s has no face %u with pixels; dsmtool info lists its faces.", map->path, (unsigned)wanted);
   if (!map_grid_of(p, wanted, choice->level, grid))
     return trouble("Face %u of %s has the levels 0 to %u, but not %u.", (unsigned)wanted, map->path,
-                   (unsigned)face_levels(&p->faces[wanted]) - 1, (unsigned)choice->level);
+                   (unsigned)projection_levels(p, wanted) - 1, (unsigned)choice->level);
   return STATUS_FINE;
 }
 

@@ -15,10 +15,17 @@ typedef struct {
 
 /* STATUS_FINE, or STATUS_TROUBLE and a sentence has been printed; likewise below. */
 int open_map_begin(open_map *map, const char *path);
+/* The same for commands that know visibility alone: a map of depths is refused. */
+int open_map_begin_deep(open_map *map, const char *path);
 void open_map_end(open_map *map);   /* one that was never opened but is all zeros may be passed too */
 
 /* *out is the caller's, for tile_destroy. */
 int open_map_tile(const open_map *map, const tile_key *key, const tile **out);
+
+static inline int open_map_has_depths(const open_map *map)
+{
+  return map->header.block == BLOCK_SHADOW_MAP;
+}
 
 /* One level of one face. */
 typedef struct {

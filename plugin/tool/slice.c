@@ -3,6 +3,7 @@
 #include <float.h>
 #include <stdlib.h>
 
+#include "map/depth_tile.h"
 #include "tool/image_file.h"
 #include "tool/open_map.h"
 
@@ -28,7 +29,9 @@ static void draw_tile(const slice *s, const tile_key *key, const tile *t)
     uint32_t row = s->grid.height - 1 - (key->y * TILE_SIDE + y);
     float *pixel = s->values + ((size_t)row * s->grid.width + key->x * TILE_SIDE + x) * s->channels;
     rgb light = rgb_grey(1);
-    if (t->kind == TILE_STORED) {
+    if (t->kind == TILE_STORED && tile_has_depths(t))
+      light = rgb_grey(s->depth <= t->near_depth + (double)depths_of(t)->depth[place]);
+    else if (t->kind == TILE_STORED) {
       if (tile_is_marked(t, place))
         continue;
       visibility v = tile_visibility(t, place);

@@ -165,7 +165,7 @@ static void set(dsm_settings *settings, const char *name, double value)
 {
   uint32_t index = 0;
   char why[200];
-  while (strcmp(dsm_api.parameters[index].name, name) != 0)
+  while (strcmp(dsm_api.blocks[0].parameters[index].name, name) != 0)
     index++;
   if (dsm_api.settings_set(settings, index, NULL, &value, 1, why, sizeof why) != DSM_OK)
     stop(why);
@@ -178,7 +178,7 @@ static double bake(const scene *s, uint32_t samples, double tolerance, dsm_stati
   dsm_box box = {{-1, -1, 1}, {1, 1, 3.1}};
   dsm_light light = {.size = sizeof light, .kind = DSM_LIGHT_PARALLEL, .direction = {0, 0, 1}, .casters = &box,
                      .caster_count = 1};
-  dsm_settings *settings = dsm_api.settings_create();
+  dsm_settings *settings = dsm_api.settings_create(0);
   dsm_map *map;
   dsm_worker *worker;
   set(settings, "resolution", s->resolution);

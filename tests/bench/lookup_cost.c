@@ -83,7 +83,7 @@ static void set(dsm_settings *settings, const char *word, double number)
 {
   uint32_t row = 0;
   char why[200];
-  while (strcmp(dsm_api.parameters[row].name, word))
+  while (strcmp(dsm_api.blocks[0].parameters[row].name, word))
     row++;
   if (dsm_api.settings_set(settings, row, NULL, &number, 1, why, sizeof why) != DSM_OK) {
     fprintf(stderr, "%s\n", why);
@@ -99,7 +99,7 @@ int main(int argc, char **argv)
   dsm_box box = {{-1, -1, 1}, {1, 1, 3}};
   dsm_light light = {.size = sizeof light, .kind = DSM_LIGHT_PARALLEL, .direction = {0, 0, 1}, .casters = &box,
                      .caster_count = 1};
-  dsm_settings *settings = dsm_api.settings_create();
+  dsm_settings *settings = dsm_api.settings_create(0);
   dsm_map *map;
   dsm_worker *worker;
   dsm_receiver *points = malloc(LOOKUPS * sizeof *points);

@@ -140,9 +140,17 @@ static inline void report_world(void *data, int32_t severity, const char *senten
 
 static inline dsm_host host_of(world *w) { return (dsm_host){sizeof(dsm_host), w, trace_world, pause_world, report_world}; }
 
-/* A settings object from "word value value …" pairs, one word a string; NULL ends. */
+/* A settings object from "word value value …" pairs, one word a string; NULL ends. Of a deep map, unless the first string is
+ * the name of another block. */
 static inline dsm_settings *settings_of(const char *const *words) {
-  dsm_settings *settings = dsm_api.settings_create();
+  uint32_t chosen = 0;
+  for (uint32_t i = 0; i < dsm_api.block_count; ++i)
+    if (words && *words && strcmp(*words, dsm_api.blocks[i].name) == 0) {
+      chosen = i;
+      ++words;
+    }
+  const dsm_block *block = &dsm_api.blocks[chosen];
+  dsm_settings *settings = dsm_api.settings_create(chosen);
   assert_non_null(settings);
   for (; words && *words; ++words) {
     char name[32], choice[32] = "", why[200];
@@ -154,7 +162,7 @@ static inline dsm_settings *settings_of(const char *const *words) {
     if (sscanf(rest, " %31[a-z]%n", choice, &n) == 1) rest += n;
     int got = sscanf(rest, "%lf %lf %lf %lf %lf %lf", &numbers[0], &numbers[1], &numbers[2], &numbers[3], &numbers[4], &numbers[5]);
     count = got > 0 ? (uint32_t)got : 0;
-    while (strcmp(dsm_api.parameters[index].name, name) != 0) ++index;
+    while (strcmp(block->parameters[index].name, name) != 0) ++index;
     if (dsm_api.settings_set(settings, index, choice[0] ? choice : NULL, numbers, count, why, sizeof why) != DSM_OK)
       fail_msg("%s", why);
   }

@@ -4,15 +4,20 @@
 #define TESTS_MADE_MAP_H
 
 #include <dirent.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "map/depth_tile.h"
 #include "map/tile.h"
 #include "random.h"
 #include "store/map_file.h"
 #include "store/map_parts.h"
+
+/* What a made map holds, where `coloured` is asked for: two kinds of deep map, and one of depths. */
+enum { MADE_GREY, MADE_COLOURED, MADE_DEPTHS };
 
 typedef struct {
   map_header header;
@@ -123,7 +128,10 @@ static inline map_header random_header(rng *r, uint32_t faces, uint32_t most_pix
   h.tolerance = rng_below(r, 2) ? SETTING_AUTOMATIC : rng_unit(r) / 2;
   h.bounded = (int)rng_below(r, 2);
   if (h.bounded) random_numbers(r, h.bounds.low, 6);
-  h.coloured = coloured;
+  h.block = coloured == MADE_DEPTHS ? BLOCK_SHADOW_MAP : BLOCK_DEEP_SHADOW;
+  p->one_level = coloured == MADE_DEPTHS;
+  h.jittered = (int)rng_below(r, 2);
+  h.coloured = coloured == MADE_COLOURED;
   h.vertices = rng_bits(r) >> 12;
   h.pixels_marked = rng_bits(r) >> 40;
   h.scene_count = 1 + rng_below(r, 3);
@@ -154,8 +162,19 @@ static inline void fill_random(rng *r, tile *t) {
   }
 }
 
+static inline const tile *random_depths(rng *r) {
+  float depth[TILE_PIXELS];
+  const tile *t;
+  int full = rng_below(r, 2) == 0;
+  for (int i = 0; i < TILE_PIXELS; ++i) depth[i] = full || rng_below(r, 3) ? (float)rng_scale(r, 1e-30, 1e30) : INFINITY;
+  depth[rng_below(r, TILE_PIXELS)] = 0;
+  assert_int_equal(depth_tile_unpack(rng_scale(r, 1e-9, 1e9), depth, &t), DSM_OK);
+  return t;
+}
+
 static inline const tile *random_tile(rng *r, int coloured, uint32_t most_vertices) {
   if (rng_below(r, 4) == 0) return &tile_lit;
+  if (coloured == MADE_DEPTHS) return random_depths(r);
   tile_plan plan;
   int marks = rng_below(r, 4) == 0, colours = coloured && rng_below(r, 2);
   for (int i = 0; i < TILE_PIXELS; ++i) {
@@ -174,7 +193,7 @@ static inline const tile *random_tile(rng *r, int coloured, uint32_t most_vertic
 
 static inline made_map made_map_random(rng *r, uint32_t faces, uint32_t most_pixels, int coloured, uint32_t most_vertices) {
   made_map m = {.header = random_header(r, faces, most_pixels, coloured), .fail_at = UINT64_MAX};
-  map_parts_lay(&m.parts, &m.header.projection, coloured);
+  map_parts_lay(&m.parts, &m.header.projection, map_header_channels(&m.header));
   m.tiles = calloc(m.parts.tile_count + 1, sizeof *m.tiles);
   for (uint64_t i = 0; i < m.parts.tile_count; ++i)
     m.tiles[i] = random_tile(r, coloured, rng_below(r, 20) == 0 ? 20 * most_vertices : most_vertices);

@@ -57,7 +57,7 @@ static void nothing_to_destroy(void **state) {
   dsm_api.map_destroy(NULL);
   dsm_api.worker_destroy(NULL);
   dsm_api.settings_destroy(NULL);
-  assert_true(dsm_api.abi == DSM_ABI && dsm_api.size == sizeof(dsm_api_table) && dsm_api.parameter_count == WORD_COUNT);
+  assert_true(dsm_api.abi == DSM_ABI && dsm_api.size == sizeof(dsm_api_table) && dsm_api.block_count == BLOCK_COUNT);
 }
 
 static void no_casters_all_lit(void **state) {

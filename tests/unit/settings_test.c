@@ -7,6 +7,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/settings.h"
@@ -70,7 +71,7 @@ static void good_values_are_taken(void **state) {
 /* The last text given is kept, and gone with the settings (a leak checker sees whether). */
 static void texts(void **state) {
   (void)state;
-  dsm_settings *s = settings_create();
+  dsm_settings *s = settings_create(BLOCK_DEEP_SHADOW);
   char name[] = "one.exr";
   assert_non_null(s);
   assert_null(settings_text(s, WORD_SAVE_FILE));
@@ -142,6 +143,66 @@ static void sentence_fits_or_is_left_out(void **state) {
   assert_int_equal(settings_set(&set, WORD_SAMPLES, NULL, NULL, 1, NULL, 0), DSM_INVALID);
 }
 
+/* The row of a word of shadow_map. */
+static uint32_t row_of(const char *name) {
+  const dsm_block *block = &settings_blocks[BLOCK_SHADOW_MAP];
+  for (uint32_t i = 0; i < block->parameter_count; ++i)
+    if (strcmp(block->parameters[i].name, name) == 0) return i;
+  fail_msg("no word %s", name);
+  return 0;
+}
+
+static dsm_result give_map(dsm_settings *s, const char *name, const char *choice, uint32_t count, double a, double b) {
+  double numbers[6] = {a, b, 0, -1, -2, -3};
+  return settings_set(s, row_of(name), choice, numbers, count, why, sizeof why);
+}
+
+static void words_of_shadow_map(void **state) {
+  (void)state;
+  const dsm_block *block = &settings_blocks[BLOCK_SHADOW_MAP];
+  assert_string_equal(settings_blocks[BLOCK_DEEP_SHADOW].name, "deep_shadow");
+  assert_string_equal(block->name, "shadow_map");
+  dsm_settings *s = settings_create(BLOCK_SHADOW_MAP);
+  assert_non_null(s);
+  assert_null(settings_create(BLOCK_COUNT));
+  /* what the table says of the defaults is so */
+  assert_true(s->resolution[0] == 1024 && s->samples == 16 && s->min_samples == 3 && s->size_factor == 3 && s->min_size == 2);
+  assert_true(s->depth_bias[0] == SETTING_AUTOMATIC && s->depth_bias[1] == SETTING_AUTOMATIC && s->pattern == PATTERN_JITTERED);
+  assert_true(s->filter == FILTER_BOX && s->filter_width == 1 && s->blur == 0 && !s->jittered && s->cache == 1024);
+  const char *names[] = {"resolution", "samples", "min_samples", "size_factor", "min_size"};
+  const double numbers[] = {1024, 16, 3, 3, 2};
+  for (int i = 0; i < 5; ++i) assert_true(strtod(block->parameters[row_of(names[i])].default_text, NULL) == numbers[i]);
+  /* each word sets its own */
+  assert_int_equal(give_map(s, "resolution", NULL, 2, 300, 200), DSM_OK);
+  assert_int_equal(give_map(s, "samples", NULL, 1, 400, 0), DSM_OK);
+  assert_int_equal(give_map(s, "min_samples", NULL, 1, 2, 0), DSM_OK);
+  assert_int_equal(give_map(s, "size_factor", NULL, 1, 0.5, 0), DSM_OK);
+  assert_int_equal(give_map(s, "min_size", NULL, 1, 0, 0), DSM_OK);
+  assert_int_equal(give_map(s, "bias", NULL, 2, 0.3, 0.4), DSM_OK);
+  assert_true(s->depth_bias[0] == 0.3 && s->depth_bias[1] == 0.4);
+  assert_int_equal(give_map(s, "bias", NULL, 1, 0.25, 9), DSM_OK);
+  assert_true(s->depth_bias[0] == 0.25 && s->depth_bias[1] == 0.25);
+  assert_int_equal(give_map(s, "depth_samples", "jittered", 0, 0, 0), DSM_OK);
+  assert_int_equal(give_map(s, "pattern", "inside", 0, 0, 0), DSM_OK);
+  assert_int_equal(give_map(s, "bounds", NULL, 6, 1, 2), DSM_OK);
+  assert_int_equal(give_map(s, "cache", NULL, 1, 3, 0), DSM_OK);
+  assert_int_equal(give_map(s, "save_file", "map.exr", 0, 0, 0), DSM_OK);
+  assert_true(s->resolution[0] == 300 && s->resolution[1] == 200 && s->samples == 400 && s->min_samples == 2);
+  assert_true(s->size_factor == 0.5 && s->min_size == 0 && s->jittered && s->pattern == PATTERN_INSIDE && s->cache == 3 && s->bounded);
+  assert_string_equal(settings_text(s, row_of("save_file")), "map.exr");
+  assert_null(settings_text(s, row_of("load_file")));
+  assert_null(settings_text(s, block->parameter_count));
+  /* and refuses what it cannot be */
+  assert_int_equal(give_map(s, "pattern", "outside", 0, 0, 0), DSM_INVALID);
+  assert_non_null(strstr(why, "jittered uniform gaussian inside."));
+  assert_int_equal(give_map(s, "pattern", "uniform", 1, 2, 0), DSM_INVALID);
+  assert_int_equal(give_map(s, "bias", NULL, 2, 0.3, -0.1), DSM_INVALID);
+  assert_int_equal(give_map(s, "bias", NULL, 3, 0.3, 0.1), DSM_INVALID);
+  assert_int_equal(give_map(s, "min_samples", NULL, 1, 0, 0), DSM_INVALID);
+  assert_int_equal(settings_set(s, block->parameter_count, NULL, NULL, 0, why, sizeof why), DSM_INVALID);
+  settings_destroy(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(defaults_are_those_of_the_table),
@@ -149,6 +210,7 @@ int main(void) {
     cmocka_unit_test(texts),
     cmocka_unit_test(bad_values_are_refused),
     cmocka_unit_test(sentence_fits_or_is_left_out),
+    cmocka_unit_test(words_of_shadow_map),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
