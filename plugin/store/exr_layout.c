@@ -157,8 +157,12 @@ static int read_header(exr_layout *l, uint64_t *place, exr_part *part)
   for (;;) {
     if (!next_attribute(l, place, &a))
       return 0;
-    if (!a.name[0])
-      return part->tiles > 0 && part->tiles == (uint64_t)part->across * part->up;
+    if (!a.name[0]) {
+      uint64_t tiles = (uint64_t)part->across * part->up;
+      if (l->alone && !part->deep)
+        part->tiles = tiles;   /* which need not be told */
+      return tiles > 0 && part->tiles == tiles;
+    }
     if (!take_attribute(l, &a, part))
       return 0;
   }

@@ -103,13 +103,13 @@ static void ask(dsm_worker *worker, answers *a) {
   }
 }
 
-static dsm_settings *new_settings(void) { return dsm_api.settings_create(); }
+enum { DEEP, DEPTHS };   /* blocks */
 
-static dsm_result set_word(dsm_settings *settings, const char *word, const char *choice, const double *numbers, uint32_t count, char *why,
-                           uint64_t size) {
+static void set_word(dsm_settings *settings, int kind, const char *word, double number) {
+  char why[200];
   uint32_t row = 0;
-  while (strcmp(dsm_api.parameters[row].name, word) != 0) ++row;
-  return dsm_api.settings_set(settings, row, choice, numbers, count, why, size);
+  while (strcmp(dsm_api.blocks[kind].parameters[row].name, word) != 0) ++row;
+  assert_int_equal(dsm_api.settings_set(settings, row, NULL, &number, 1, why, sizeof why), DSM_OK);
 }
 
 typedef enum { ON_DEMAND, SAVED, LOADED } way;
@@ -128,9 +128,7 @@ static dsm_result work(dsm_worker *worker, way how, answers *a) {
 }
 
 /* A map's whole life. What cannot be made is left out, as a host would. */
-static void live(way how, double cache, answers *a) {
-  static const char *const words[] = {"resolution", "samples", "cache"};
-  const double numbers[] = {18, 4, cache};
+static void live(int kind, way how, double cache, answers *a) {
   world w = {.shapes = shapes, .count = SHAPES};
   dsm_host host = host_of(&w);
   dsm_light light = spot_at(0, 0, 0, 0, 0, 1, 30);
@@ -138,10 +136,12 @@ static void live(way how, double cache, answers *a) {
   dsm_worker *worker = NULL;
   light.casters = boxes;
   light.caster_count = SHAPES;
-  dsm_settings *settings = new_settings();
-  char why[200];
-  for (int i = 0; i < 3 && settings; ++i)
-    assert_int_equal(set_word(settings, words[i], NULL, &numbers[i], 1, why, sizeof why), DSM_OK);
+  dsm_settings *settings = dsm_api.settings_create((uint32_t)kind);
+  if (settings) {
+    set_word(settings, kind, "resolution", 18);
+    set_word(settings, kind, "samples", 4);
+    set_word(settings, kind, "cache", cache);
+  }
   dsm_result result = settings ? dsm_api.map_create(&host, &light, settings, &map) : DSM_NO_MEMORY;
   if (result == DSM_OK) result = dsm_api.worker_create(map, &w, &worker);
   if (result == DSM_OK) result = work(worker, how, a);
@@ -159,14 +159,14 @@ static int is_right(int i, const double light[3], const double truth[3]) {
   return 1;
 }
 
-static void fail_each(way how, double cache, const answers *truth) {
+static void fail_each(int kind, way how, double cache, const answers *truth) {
   for (memory.for_good = 0; memory.for_good < 2; ++memory.for_good)
     for (long n = 0;; ++n) {
       answers a = {.known = {0}};
       int before = memory.live;
       memory.failed = 0;
       memory.left = n;
-      live(how, cache, &a);
+      live(kind, how, cache, &a);
       memory.left = -1;
       if (memory.live != before) fail_msg("allocation %ld: %d blocks leak", n, memory.live - before);
       for (int i = 0; i < SIDE * SIDE; ++i)
@@ -179,23 +179,27 @@ static void fail_each(way how, double cache, const answers *truth) {
 
 static void every_allocation_fails(void **state) {
   (void)state;
-  answers truth = {.known = {0}};
-  live(ON_DEMAND, 1024, &truth);
-  for (int i = 0; i < SIDE * SIDE; ++i) assert_true(truth.known[i]);
-  fail_each(ON_DEMAND, 1024, &truth);
-  fail_each(ON_DEMAND, 0.001, &truth);   /* tiles come and go */
+  for (int kind = DEEP; kind <= DEPTHS; ++kind) {
+    answers truth = {.known = {0}};
+    live(kind, ON_DEMAND, 1024, &truth);
+    for (int i = 0; i < SIDE * SIDE; ++i) assert_true(truth.known[i]);
+    fail_each(kind, ON_DEMAND, 1024, &truth);
+    fail_each(kind, ON_DEMAND, 0.001, &truth);   /* tiles come and go */
+  }
 }
 
 static void every_allocation_fails_with_files(void **state) {
   (void)state;
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/map.exr", folder);
-  answers truth = {.known = {0}};
-  live(SAVED, 1024, &truth);
-  for (int i = 0; i < SIDE * SIDE; ++i) assert_true(truth.known[i]);
-  fail_each(LOADED, 1024, &truth);
-  fail_each(SAVED, 0.001, &truth);
-  unlink(path);
+  for (int kind = DEEP; kind <= DEPTHS; ++kind) {
+    answers truth = {.known = {0}};
+    live(kind, SAVED, 1024, &truth);
+    for (int i = 0; i < SIDE * SIDE; ++i) assert_true(truth.known[i]);
+    fail_each(kind, LOADED, 1024, &truth);
+    fail_each(kind, SAVED, 0.001, &truth);
+    unlink(path);
+  }
   assert_int_equal(rmdir(folder), 0);   /* nothing else is left behind */
 }
 
