@@ -123,8 +123,7 @@ static dsm_result average_volume(const bake_job *job, bake_scratch *s, uint32_t 
   }
   s->first[samples] = s->transmittances.count;
   average_input in = {s->transmittances.data, s->first, s->weights, samples};
-  dsm_result result = average_sweep(&in, &s->heap, &s->average);
-  return result == DSM_OK && is_automatic(job->settings) ? noise_measure(&s->noise, &in, &s->average) : result;
+  return average_and_noise(&in, &s->sweep, is_automatic(job->settings) ? &s->noise : NULL, &s->average);
 }
 
 static int is_grey(const vertices *v)
@@ -263,7 +262,7 @@ void bake_scratch_free(bake_scratch *s)
   vertices_free(&s->transmittances);
   vertices_free(&s->average);
   vertices_free(&s->stored);
-  average_free(&s->heap);
+  average_free(&s->sweep);
   step_free(&s->steps);
   noise_free(&s->noise);
   vertices_free(&s->smooth);

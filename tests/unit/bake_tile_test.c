@@ -209,9 +209,8 @@ static void noise_is_measured(void **state) {
     }
     first[N] = all.count;
     average_input in = {all.data, first, weights, N};
-    assert_int_equal(average_sweep(&in, &scratch, &mean), DSM_OK);
     noise_profile profile = {0};
-    assert_int_equal(noise_measure(&profile, &in, &mean), DSM_OK);
+    assert_int_equal(average_and_noise(&in, &scratch, &profile, &mean), DSM_OK);
     for (size_t i = 0; i < mean.count; ++i)
       if (mean.data[i].z < 2) assert_true(profile.allowed[i] == 0);
     double behind = profile.allowed[mean.count - 1];
