@@ -169,9 +169,8 @@ static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, const noise_l
   }
   double tolerance = finest_tolerance(job->settings);
   pixel->tolerance = fmax(pixel->tolerance, tolerance);
-  tolerance -= VALUE_ROUNDING + (kind.volume ? spent_on_rays(job->settings) : 0);
-  tolerance = fmax(0, tolerance);
-  result = compress_minimal(clean->data, clean->count, channels, tolerance, &s->stored);
+  double spent = VALUE_ROUNDING + (kind.volume ? spent_on_rays(job->settings) : 0);
+  result = compress_minimal_after(clean->data, clean->count, channels, tolerance, spent, &s->stored);
   pixel->count = s->stored.count - pixel->first;
   tally->vertices_in += s->average.count;
   return result;
