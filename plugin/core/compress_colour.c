@@ -129,9 +129,10 @@ static int find_joints(job *j, size_t first) {
     }
     begin(j, &at);
     for (; k < count; ++k) {
-      if (!pass(j, k, is_wall(j, k) ? BEFORE : BEFORE | AFTER, &next)) break;
+      int ends = is_wall(j, k);
+      if (!pass(j, k, ends ? BEFORE : BEFORE | AFTER, &next)) break;
       at = next;
-      if (is_wall(j, k)) break;
+      if (ends) break;
       if (ends_level(j, &at)) {
         j->joints[j->joint_count++] = at;
         return 1;

@@ -226,7 +226,8 @@ int main(int count, char **words)
     if (count > 2) {
       dsm_statistics statistics;
       double resolution = count > 4 ? atof(words[4]) : scenes[s].resolution;
-      printf("%.0f\n", bake(&scenes[s], resolution, (uint32_t)atoi(words[2]), count > 3 ? atof(words[3]) : -1, &statistics));
+      double tolerance = count > 3 ? atof(words[3]) : -1;
+      printf("%.0f\n", bake(&scenes[s], resolution, (uint32_t)atoi(words[2]), tolerance, &statistics));
       continue;
     }
     for (int k = 0; k < 2; k++) {
