@@ -8,6 +8,7 @@
 
 #include "bake/smooth_noise.h"
 #include "core/compress.h"
+#include "core/thin.h"
 #include "core/transmittance.h"
 #include "map/pack_tile.h"
 
@@ -47,10 +48,14 @@ static noise_limits limits_of(const bake_job *job, uint32_t face_index)
                         perspective ? 0 : size};
 }
 
-/* A merge in transmittance_build may already have cost this much, of a ray with volume spans. */
-static double spent_on_rays(const dsm_settings *settings)
+/* Rays with volume spans have far more vertices together than their average needs; a small part of the tolerance
+ * spares most of the work on them. */
+static double thinning(const dsm_settings *settings) { return finest_tolerance(settings) / 32; }
+
+/* What of the tolerance the function of a pixel with volume spans has cost: transmittance_build, and thinning. */
+static double spent_on_volume(const dsm_settings *settings)
 {
-  return fmax(finest_tolerance(settings) / 4, 1e-6);
+  return fmax(finest_tolerance(settings) / 4, 1e-6) + thinning(settings);
 }
 
 static dsm_result make_room(bake_scratch *s, uint32_t samples, uint32_t rays)
@@ -123,8 +128,7 @@ static dsm_result average_volume(const bake_job *job, bake_scratch *s, uint32_t 
   }
   s->first[samples] = s->transmittances.count;
   average_input in = {s->transmittances.data, s->first, s->weights, samples};
-  dsm_result result = average_sweep(&in, &s->heap, &s->average);
-  return result == DSM_OK && is_automatic(job->settings) ? noise_measure(&s->noise, &in, &s->average) : result;
+  return average_and_noise(&in, &s->sweep, is_automatic(job->settings) ? &s->noise : NULL, &s->average);
 }
 
 static int is_grey(const vertices *v)
@@ -160,21 +164,23 @@ static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, const noise_l
   pixel->coloured = kind.coloured && !is_grey(&s->average);
   int channels = pixel->coloured ? 3 : 1;
   const vertices *clean = &s->average;
+  tally->vertices_in += s->average.count;
+  if (is_automatic(job->settings))
+    pixel->tolerance = noise_rms(&s->noise, s->average.count);
+  if (kind.volume)
+    thin_vertices(&s->average, is_automatic(job->settings) ? s->noise.allowed : NULL, thinning(job->settings));
   if (is_automatic(job->settings)) {
     s->smooth.count = 0;
     result = smooth_noise(&s->average, &s->noise, channels, limits, &s->relative, &s->smooth);
     if (result != DSM_OK)
       return result;
     clean = &s->smooth;
-    pixel->tolerance = noise_rms(&s->noise, s->average.count);
   }
   double tolerance = finest_tolerance(job->settings);
   pixel->tolerance = fmax(pixel->tolerance, tolerance);
-  tolerance -= VALUE_ROUNDING + (kind.volume ? spent_on_rays(job->settings) : 0);
-  tolerance = fmax(0, tolerance);
-  result = compress_minimal(clean->data, clean->count, channels, tolerance, &s->stored);
+  double spent = VALUE_ROUNDING + (kind.volume ? spent_on_volume(job->settings) : 0);
+  result = compress_minimal_after(clean->data, clean->count, channels, tolerance, spent, &s->stored);
   pixel->count = s->stored.count - pixel->first;
-  tally->vertices_in += s->average.count;
   return result;
 }
 
@@ -263,7 +269,7 @@ void bake_scratch_free(bake_scratch *s)
   vertices_free(&s->transmittances);
   vertices_free(&s->average);
   vertices_free(&s->stored);
-  average_free(&s->heap);
+  average_free(&s->sweep);
   step_free(&s->steps);
   noise_free(&s->noise);
   vertices_free(&s->smooth);

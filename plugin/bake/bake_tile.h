@@ -9,7 +9,7 @@
 #ifndef DSM_BAKE_BAKE_TILE_H
 #define DSM_BAKE_BAKE_TILE_H
 
-#include "bake/noise_profile.h"
+#include "core/noise_profile.h"
 #include "bake/step_sweep.h"
 #include "core/average.h"
 #include "core/events.h"
@@ -34,7 +34,7 @@ typedef struct {
   uint32_t room_rays, room_samples;
   dsm_sink sink;
   vertices transmittances, average, stored;
-  average_scratch heap;
+  average_scratch sweep;
   step_scratch steps;
   noise_profile noise;
   vertices smooth, relative;   /* the average without its noise, and a stretch of it */

@@ -12,7 +12,8 @@
 #ifndef DSM_BAKE_SMOOTH_NOISE_H
 #define DSM_BAKE_SMOOTH_NOISE_H
 
-#include "bake/noise_profile.h"
+#include "core/noise_profile.h"
+#include "core/vertices.h"
 
 typedef struct {
   double least;           /* the tolerance where there is no noise */

@@ -9,7 +9,8 @@
 #ifndef DSM_BAKE_STEP_SWEEP_H
 #define DSM_BAKE_STEP_SWEEP_H
 
-#include "bake/noise_profile.h"
+#include "core/noise_profile.h"
+#include "core/vertices.h"
 #include "core/events.h"
 
 /* All events of rays first_ray … first_ray + rays - 1, as sink_order leaves them. */
@@ -29,7 +30,7 @@ typedef struct {
 } step_scratch;
 
 /* Appends the average to `mean`, and writes its noise to `profile` unless that is NULL. Both are what
- * average_sweep and noise_measure make of the rays' functions, to rounding; the average is free of drift, and
+ * average_and_noise makes of the rays' functions, to rounding; the average is free of drift, and
  * for opaque surfaces it is exact. */
 dsm_result step_sweep(const step_input *in, step_scratch *scratch, noise_profile *profile, vertices *mean);
 void step_free(step_scratch *scratch);

@@ -12,6 +12,9 @@
  */
 #include "core/compress.h"
 
+#include <stdint.h>
+
+#include "core/compress_tunnel.h"
 #include "core/extremes.h"
 
 #define STEEPEST 1e300
@@ -21,7 +24,7 @@ typedef struct { double low[3], high[3]; } range;
 typedef struct {
   vertices *out;
   int channels;
-  double tolerance;
+  bounds within;
   double z;       /* origin of the segment; its value is y */
   rgb y;
   range slopes;   /* what passes all windows so far */
@@ -34,7 +37,7 @@ typedef struct {
   double z;
   rgb before, after;
   int tall;       /* the step must survive */
-} place;
+} spot;
 
 static double clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
@@ -42,7 +45,7 @@ static dsm_result put(const wedge *w, double z, rgb v) {
   return vertices_push(w->out, z, w->channels == 1 ? rgb_grey(v.c[0]) : v);
 }
 
-static size_t read_place(const wedge *w, const vertex *in, size_t count, size_t i, place *p) {
+static size_t read_spot(const wedge *w, const vertex *in, size_t count, size_t i, spot *p) {
   size_t last = i;
   while (last + 1 < count && in[last + 1].z == in[i].z) ++last;
   p->z = in[i].z;
@@ -50,18 +53,19 @@ static size_t read_place(const wedge *w, const vertex *in, size_t count, size_t 
   for (int c = 0; c < w->channels; ++c) {
     p->before.c[c] = i == 0 ? 1 : clamp(in[i].v.c[c], 0, 1);
     p->after.c[c] = clamp(in[last].v.c[c], 0, 1);
-    p->tall |= fabs(p->after.c[c] - p->before.c[c]) > w->tolerance;
+    double tall = i > 0 && p->after.c[c] > 0 ? w->within.tall : w->within.tolerance;
+    p->tall |= fabs(p->after.c[c] - p->before.c[c]) > tall;
   }
   return last + 1;
 }
 
 /* A tall step is met in front only. Windows stay in [0,1], and so does the output. */
-static range window(const wedge *w, const place *p) {
+static range window(const wedge *w, const spot *p) {
   range r;
   for (int c = 0; c < w->channels; ++c) {
     double a = p->before.c[c], b = p->tall ? a : p->after.c[c];
-    r.low[c] = greater(0, greater(a, b) - w->tolerance);
-    r.high[c] = lesser(1, lesser(a, b) + w->tolerance);
+    r.low[c] = greater(0, greater(a, b) - w->within.tolerance);
+    r.high[c] = lesser(1, lesser(a, b) + w->within.tolerance);
   }
   return r;
 }
@@ -78,7 +82,7 @@ static void begin(wedge *w, double z, rgb y) {
 }
 
 /* Lets the segment pass one more place if it can. */
-static int extend(wedge *w, const place *p) {
+static int extend(wedge *w, const spot *p) {
   range target = window(w, p), slopes = w->slopes;
   for (int c = 0; c < w->channels; ++c) {
     double y = w->y.c[c], run = p->z - w->z;
@@ -99,7 +103,7 @@ static int extend(wedge *w, const place *p) {
 /* Where the segment ends at place p, which it passes: through the middle of its slopes, or as near to `aim` as
  * they allow. Where the input does not grow, a level segment passes too, because the origin is within the
  * tolerance of an input value that is not below any later one; so a rise can be cut to that. */
-static rgb end_of(const wedge *w, const place *p, const rgb *aim) {
+static rgb end_of(const wedge *w, const spot *p, const rgb *aim) {
   if (w->level) return w->y;
   range target = window(w, p);
   rgb end = w->y;
@@ -114,7 +118,7 @@ static rgb end_of(const wedge *w, const place *p, const rgb *aim) {
 
 /* After the last vertex the output keeps its last value, so a segment that may be level needs no end. Only
  * where all light is gone must it be exactly 0: nothing shines through what is opaque. */
-static dsm_result finish(const wedge *w, const place *last) {
+static dsm_result finish(const wedge *w, const spot *last) {
   if (w->level || !(last->z > w->z)) return DSM_OK;
   int level = 1, is_exact = 1;
   for (int c = 0; c < w->channels; ++c)
@@ -130,16 +134,16 @@ static dsm_result finish(const wedge *w, const place *last) {
   return result || is_exact ? result : put(w, last->z, exact);
 }
 
-dsm_result compress_greedy(const vertex *in, size_t count, int channels, double tolerance, vertices *out) {
+dsm_result greedy_within(const vertex *in, size_t count, int channels, bounds within, size_t most, vertices *out) {
   size_t start = out->count;
   dsm_result result = DSM_OK;
-  wedge w = {.out = out, .channels = channels, .tolerance = tolerance};
+  wedge w = {.out = out, .channels = channels, .within = within};
   begin(&w, 0, rgb_grey(1));
   w.level = 1;
-  place last = {.before = rgb_grey(1), .after = rgb_grey(1)}, p;
+  spot last = {.before = rgb_grey(1), .after = rgb_grey(1)}, p;
 
-  for (size_t i = 0; !result && i < count;) {
-    i = read_place(&w, in, count, i, &p);
+  for (size_t i = 0; !result && i < count && out->count - start < most;) {
+    i = read_spot(&w, in, count, i, &p);
     if (!extend(&w, &p)) {
       /* A new segment from the place before reaches this one: its window is not empty and there is no other. */
       rgb end = end_of(&w, &last, NULL);
@@ -163,4 +167,8 @@ dsm_result compress_greedy(const vertex *in, size_t count, int channels, double 
   if (!result) result = finish(&w, &last);
   if (result) out->count = start;
   return result;
+}
+
+dsm_result compress_greedy(const vertex *in, size_t count, int channels, double tolerance, vertices *out) {
+  return greedy_within(in, count, channels, (bounds){tolerance, tolerance}, SIZE_MAX, out);
 }

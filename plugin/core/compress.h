@@ -25,5 +25,10 @@ dsm_result compress_greedy(const vertex *in, size_t count, int channels, double 
  * doubles, and with three channels no linear-time optimum is known: then it may be more, but never more than
  * compress_greedy gives. Below 1e-12 it is compress_greedy. Linear time, 170 bytes a vertex while it runs. */
 dsm_result compress_minimal(const vertex *in, size_t count, int channels, double tolerance, vertices *out);
+/* The same, where `spent` of the tolerance has gone already, or will go by rounding: the output is within the rest. A
+ * step is still tall only if it is taller than the whole tolerance, as far as a line can pass it, which is twice the
+ * rest; but a first step from 1 and steps to 0 are tall if they are taller than the rest. */
+dsm_result compress_minimal_after(const vertex *in, size_t count, int channels, double tolerance, double spent,
+                                  vertices *out);
 
 #endif

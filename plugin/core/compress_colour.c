@@ -129,9 +129,10 @@ static int find_joints(job *j, size_t first) {
     }
     begin(j, &at);
     for (; k < count; ++k) {
-      if (!pass(j, k, is_wall(j, k) ? BEFORE : BEFORE | AFTER, &next)) break;
+      int ends = is_wall(j, k);
+      if (!pass(j, k, ends ? BEFORE : BEFORE | AFTER, &next)) break;
       at = next;
-      if (is_wall(j, k)) break;
+      if (ends) break;
       if (ends_level(j, &at)) {
         j->joints[j->joint_count++] = at;
         return 1;
@@ -183,11 +184,11 @@ static dsm_result put_joints(job *j, vertices *out) {
   return DSM_OK;
 }
 
-dsm_result compress_colour(const vertex *in, size_t count, double tolerance, vertices *out, int *lost) {
+dsm_result compress_colour(const vertex *in, size_t count, bounds within, vertices *out, int *lost) {
   size_t most = count + 3, bytes = 3 * (sizeof(place) + 4 * sizeof(point)) + 2 * sizeof(joint);
   char *memory = most > SIZE_MAX / bytes ? NULL : malloc(most * bytes);
   if (!memory) return DSM_NO_MEMORY;
-  job j = {.margin = lesser(MARGIN, tolerance * 0x1p-20), .joints = (joint *)memory};
+  job j = {.margin = lesser(MARGIN, within.tolerance * 0x1p-20), .joints = (joint *)memory};
   point *points = (point *)(j.joints + 2 * most);
   place *places = (place *)(points + 12 * most);
   int dims = 0;
@@ -196,7 +197,7 @@ dsm_result compress_colour(const vertex *in, size_t count, double tolerance, ver
     j.lines[c].floor.points = points + 4 * (size_t)c * most;
     j.lines[c].roof.points = j.lines[c].floor.points + 2 * most;
     j.tunnels[c].places = places + (size_t)c * most;
-    dims |= tunnel_read(&j.tunnels[c], in, count, c, tolerance, 0);
+    dims |= tunnel_read(&j.tunnels[c], in, count, c, within, 0);
     if (j.tunnels[c].clear < clear) clear = j.tunnels[c].clear;
     j.tunnels[c].clear = 0;
   }
@@ -204,7 +205,7 @@ dsm_result compress_colour(const vertex *in, size_t count, double tolerance, ver
   *lost = 0;
   if (dims) {
     int starts_at_wall = is_wall(&j, clear);
-    for (int c = 0; c < 3; ++c) starts_at_wall &= 1 - j.tunnels[c].places[clear].before <= tolerance;
+    for (int c = 0; c < 3; ++c) starts_at_wall &= 1 - j.tunnels[c].places[clear].before <= within.tolerance;
     find_level(&j);
     *lost = (clear == 0 && !starts_at_wall) || !find_joints(&j, starts_at_wall ? clear : clear - 1);
     if (!*lost) {

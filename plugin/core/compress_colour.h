@@ -3,9 +3,9 @@
 #ifndef DSM_CORE_COMPRESS_COLOUR_H
 #define DSM_CORE_COMPRESS_COLOUR_H
 
-#include "core/vertices.h"
+#include "core/compress_tunnel.h"
 
 /* Sets *lost if it finds nothing. `out` is as it was then, or if it fails. */
-dsm_result compress_colour(const vertex *in, size_t count, double tolerance, vertices *out, int *lost);
+dsm_result compress_colour(const vertex *in, size_t count, bounds within, vertices *out, int *lost);
 
 #endif

@@ -27,6 +27,8 @@
 
 #define MARGIN 1e-12
 #define LEAST_TOLERANCE 1e-12   /* below, rounding is all */
+#define PASSABLE 1.99           /* of the tolerance: a step that a line can pass */
+#define STEP_ROUNDING 4e-16     /* of a step that is the difference of two averages */
 #define ALL SIZE_MAX
 
 typedef struct {
@@ -259,10 +261,10 @@ static dsm_result walk(job *j, int *lost) {
 }
 
 /* Where rounding matters, or channels share their depths, the greedy's result can be shorter, or the only one. */
-static dsm_result compete_with_greedy(const vertex *in, size_t count, int channels, double tolerance, vertices *out,
+static dsm_result compete_with_greedy(const vertex *in, size_t count, int channels, bounds within, vertices *out,
                                       size_t start, int lost) {
   size_t middle = out->count, mine = middle - start;
-  dsm_result result = compress_greedy(in, count, channels, tolerance, out);
+  dsm_result result = greedy_within(in, count, channels, within, lost ? SIZE_MAX : mine, out);
   size_t theirs = out->count - middle;
   out->count = result ? start : middle;
   if (result || (!lost && mine <= theirs)) return result;
@@ -271,7 +273,7 @@ static dsm_result compete_with_greedy(const vertex *in, size_t count, int channe
   return DSM_OK;
 }
 
-static dsm_result compress_grey(const vertex *in, size_t count, double tolerance, vertices *out, int *lost,
+static dsm_result compress_grey(const vertex *in, size_t count, bounds within, vertices *out, int *lost,
                                 int *doubtful) {
   size_t most = count + 3, bytes = sizeof(place) + 4 * sizeof(point) + 2 * sizeof(chord);
   char *memory = most > SIZE_MAX / bytes ? NULL : malloc(most * bytes);
@@ -279,14 +281,14 @@ static dsm_result compress_grey(const vertex *in, size_t count, double tolerance
   size_t start = out->count;
   job j = {.out = out, .value = 1, .depth = -HUGE_VAL};
   search *s = &j.search;
-  s->margin = lesser(MARGIN, tolerance * 0x1p-20);
+  s->margin = lesser(MARGIN, within.tolerance * 0x1p-20);
   s->goals = (chord *)memory;
   s->tunnel.places = (place *)(s->goals + 2 * most);
   s->lines.floor.points = (point *)(s->tunnel.places + most);
   s->lines.roof.points = s->lines.floor.points + 2 * most;
 
   dsm_result result = DSM_OK;
-  if (tunnel_read(&s->tunnel, in, count, 0, tolerance, 1)) {
+  if (tunnel_read(&s->tunnel, in, count, 0, within, 1)) {
     s->doubtful = tunnel_steepness(&s->tunnel) * 0x1p-52 > s->margin / 8;
     *lost = !find_goals(s);
     if (!*lost) result = walk(&j, lost);
@@ -298,12 +300,19 @@ static dsm_result compress_grey(const vertex *in, size_t count, double tolerance
   return result;
 }
 
-dsm_result compress_minimal(const vertex *in, size_t count, int channels, double tolerance, vertices *out) {
-  if (tolerance < LEAST_TOLERANCE) return compress_greedy(in, count, channels, tolerance, out);
+dsm_result compress_minimal_after(const vertex *in, size_t count, int channels, double tolerance, double spent,
+                                  vertices *out) {
+  double rest = greater(0, tolerance - spent);
+  bounds within = {rest, lesser(spent > 0 ? tolerance + STEP_ROUNDING : tolerance, PASSABLE * rest)};
+  if (rest < LEAST_TOLERANCE) return compress_greedy(in, count, channels, rest, out);
   size_t start = out->count;
   int lost = 0, doubtful = channels > 1;
-  dsm_result result = channels > 1 ? compress_colour(in, count, tolerance, out, &lost)
-                                   : compress_grey(in, count, tolerance, out, &lost, &doubtful);
+  dsm_result result = channels > 1 ? compress_colour(in, count, within, out, &lost)
+                                   : compress_grey(in, count, within, out, &lost, &doubtful);
   if (result || !(lost || doubtful)) return result;
-  return compete_with_greedy(in, count, channels, tolerance, out, start, lost);
+  return compete_with_greedy(in, count, channels, within, out, start, lost);
+}
+
+dsm_result compress_minimal(const vertex *in, size_t count, int channels, double tolerance, vertices *out) {
+  return compress_minimal_after(in, count, channels, tolerance, 0, out);
 }

@@ -23,9 +23,11 @@ static int put_clear_end(tunnel *t, const place *p) {
   return 1;
 }
 
-int tunnel_read(tunnel *t, const vertex *in, size_t count, int channel, double tolerance, int split) {
+int tunnel_read(tunnel *t, const vertex *in, size_t count, int channel, bounds within, int split) {
+  double tolerance = within.tolerance;
   t->count = 0;
   t->tolerance = tolerance;
+  t->tall = within.tall;
   t->falls = 1;
   t->clear = SIZE_MAX;
   int clear = 1;

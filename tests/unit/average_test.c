@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "core/average.h"
+#include "noise_direct.h"
 #include "random.h"
 
 /* A set of functions that owns its memory. */
@@ -224,6 +225,48 @@ static void random_functions_match_the_direct_sum(void **state) {
   average_free(&scratch);
 }
 
+/* Has a function a vertex between two vertices of the average, because there it made no difference? */
+static int is_idle_between(const set *s, const vertices *out, size_t i) {
+  double from = out->data[i].z, to = i + 1 < out->count ? out->data[i + 1].z : HUGE_VAL;
+  for (size_t k = 0; k < s->all.count; ++k)
+    if (s->all.data[k].z > from && s->all.data[k].z < to) return 1;
+  return 0;
+}
+
+/* The noise, against that of each pair of neighbours by itself. */
+static void noise_is_that_of_the_pairs(void **state) {
+  (void)state;
+  average_scratch scratch = {0};
+  noise_profile profile = {0};
+  vertices out = {0};
+  size_t noisy = 0;
+  for (uint64_t seed = 0; seed < 1500; ++seed) {
+    rng r = rng_seeded(seed);
+    uint32_t count = 1 + rng_below(&r, 24);
+    int may_grow = rng_below(&r, 3) == 0, grey = rng_below(&r, 2) == 0;
+    set s;
+    set_begin(&s, count);
+    for (uint32_t i = 0; i < count; ++i) random_function(&s, &r, 1, may_grow);
+    for (size_t i = 0; i < s.all.count && grey; ++i) s.all.data[i].v = rgb_grey(s.all.data[i].v.c[0]);
+    out.count = 0;
+    assert_int_equal(average_and_noise(&s.in, &scratch, &profile, &out), DSM_OK);
+    double *want = malloc((out.count + 1) * sizeof *want);
+    noise_direct(&s.in, &out, want);
+    for (size_t i = 0; i < out.count; ++i) {
+      if (i + 1 < out.count && out.data[i + 1].z == out.data[i].z) continue;
+      if (is_idle_between(&s, &out, i)) continue;
+      assert_seeded(&r, fabs(profile.allowed[i] - want[i]) < 1e-7);
+      noisy += profile.allowed[i] > 0;
+    }
+    free(want);
+    set_free(&s);
+  }
+  assert_true(noisy > 10000);
+  noise_free(&profile);
+  vertices_free(&out);
+  average_free(&scratch);
+}
+
 /* Ramps as steep as 10^13 beside ramps as flat as 10^-7, a million vertices in all. */
 static void a_million_vertices_do_not_drift(void **state) {
   (void)state;
@@ -358,7 +401,7 @@ static void appends_and_undoes(void **state) {
   assert_int_equal(average_direct(&s.in, &out), DSM_NO_MEMORY);
   assert_true(out.count == full);
   average_free(&scratch);
-  assert_true(scratch.heap == NULL && scratch.room == 0);
+  assert_true(scratch.keys == NULL && scratch.room_vertices == 0);
   set_free(&s);
 }
 
@@ -369,6 +412,7 @@ int main(void) {
     cmocka_unit_test(idle_vertices_vanish),
     cmocka_unit_test(nothing_in_nothing_out),
     cmocka_unit_test(random_functions_match_the_direct_sum),
+    cmocka_unit_test(noise_is_that_of_the_pairs),
     cmocka_unit_test(a_million_vertices_do_not_drift),
     cmocka_unit_test(a_million_functions_do_not_drift),
     cmocka_unit_test(what_is_dark_is_exactly_zero),

@@ -104,6 +104,29 @@ static void slanted_glass_is_small_and_exact(void **state) {
   }
 }
 
+/* What storing rounds makes no tall step of the step of one ray in 16, though it is as tall as the tolerance. */
+static void steps_of_one_ray_merge(void **state) {
+  (void)state;
+  enum { HAIRS = 400 };
+  static shape hair[HAIRS];
+  rng r = rng_seeded(7);
+  uint64_t vertices[2];
+  for (int i = 0; i < HAIRS; ++i)
+    hair[i] = sphere_at(rng_between(&r, -1, 1), rng_between(&r, -1, 1), rng_between(&r, 2, 4), 0.05, 0);
+  for (int k = 0; k < 2; ++k) {
+    stage s;
+    stage_open(&s, hair, HAIRS, spot_at(0, 0, 0, 0, 0, 1, 25), WORDS("resolution 40", "samples 16", k ? "tolerance 0.0624" : "tolerance 0.0625"));
+    bake_scratch scratch = {0};
+    tile_tally tally;
+    tile_destroy(bake(&s, 1, 1, &scratch, &tally));
+    vertices[k] = tally.vertices;
+    bake_scratch_free(&scratch);
+    stage_close(&s);
+  }
+  print_message("tolerance of one ray: %llu vertices, of less: %llu\n", (unsigned long long)vertices[0], (unsigned long long)vertices[1]);
+  assert_true(2 * vertices[0] < vertices[1]);
+}
+
 static void nothing_in_the_way_is_the_shared_tile(void **state) {
   (void)state;
   shape all[] = {sphere_at(-0.9, -0.9, 5, 0.1, 0), sphere_at(0.9, 0.9, 5, 0.1, 0)};
@@ -209,9 +232,8 @@ static void noise_is_measured(void **state) {
     }
     first[N] = all.count;
     average_input in = {all.data, first, weights, N};
-    assert_int_equal(average_sweep(&in, &scratch, &mean), DSM_OK);
     noise_profile profile = {0};
-    assert_int_equal(noise_measure(&profile, &in, &mean), DSM_OK);
+    assert_int_equal(average_and_noise(&in, &scratch, &profile, &mean), DSM_OK);
     for (size_t i = 0; i < mean.count; ++i)
       if (mean.data[i].z < 2) assert_true(profile.allowed[i] == 0);
     double behind = profile.allowed[mean.count - 1];
@@ -233,6 +255,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pixels_are_their_rays_average),
     cmocka_unit_test(slanted_glass_is_small_and_exact),
+    cmocka_unit_test(steps_of_one_ray_merge),
     cmocka_unit_test(nothing_in_the_way_is_the_shared_tile),
     cmocka_unit_test(batches_are_whole_pixels),
     cmocka_unit_test(packing_keeps_steps_and_drops_coincidence),

@@ -42,19 +42,20 @@ typedef struct {
 static real least_of(real a, real b) { return a < b ? a : b; }
 static real most_of(real a, real b) { return a > b ? a : b; }
 
-static void read_spots(brute *f, const vertex *in, size_t n, double tolerance) {
+static void read_spots(brute *f, const vertex *in, size_t n, double tolerance, double tall_from) {
   *f = (brute){.tolerance = tolerance, .falls = 1, .clear = none, .cap = 1};
   real v = 1, z = 0;
   for (size_t i = 0, last; i < n; i = last + 1) {
     for (last = i; last + 1 < n && in[last + 1].z == in[i].z;) ++last;
     spot s = {in[i].z, i ? in[i].v.c[0] : 1, in[last].v.c[0], 0};
-    s.tall = s.before - s.after > f->tolerance || s.after - s.before > f->tolerance;
+    real tall = i && s.after > 0 ? tall_from : tolerance;
+    s.tall = s.before - s.after > tall || s.after - s.before > tall;
     f->falls &= s.before <= v && s.after <= s.before;
     if (f->clear == none && s.before < 1 - f->tolerance)
       f->clear = z + (s.z - z) * (v - (1 - f->tolerance)) / (v - s.before);
     if (f->clear == none && s.after < 1 - f->tolerance) f->clear = s.z;
     if (fabsl(s.before - 1 + f->tolerance) < close || fabsl(s.after - 1 + f->tolerance) < close) f->ambiguous = 1;
-    if (fabsl(fabsl(s.before - s.after) - f->tolerance) < close) f->ambiguous = 1;
+    if (fabsl(fabsl(s.before - s.after) - tall) < close) f->ambiguous = 1;
     f->s[f->count++] = s;
     v = s.after;
     z = s.z;
@@ -368,7 +369,7 @@ static void count_is_the_fewest(void **state) {
     size_t n = small_function(&r, e, may_grow);
     double tolerance = rng_scale(&r, 0.01, 0.4);
     static brute f;
-    read_spots(&f, e, n, tolerance);
+    read_spots(&f, e, n, tolerance, tolerance);
     int most = fewest(&f);
     check(&r, &p, e, n, tolerance, f.falls);
     if (most < 0) continue;
@@ -377,6 +378,56 @@ static void count_is_the_fewest(void **state) {
   }
   assert_true(judged > seeds / 10 * 9);
   free_pair(&p);
+}
+
+/* Of the tolerance some has been spent: the tunnel shrinks, and what is a tall step does not. */
+static void spending_makes_no_step_tall(void **state) {
+  (void)state;
+  vertices out = {0};
+  int judged = 0, merged = 0;
+  enum { seeds = 30000 };
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    rng r = rng_seeded(seed);
+    vertex e[MOST];
+    int may_grow = rng_below(&r, 4) == 0;
+    size_t n = small_function(&r, e, may_grow);
+    double tolerance = rng_scale(&r, 0.01, 0.4), rest = tolerance * rng_between(&r, 0.55, 1);
+    static brute f;
+    read_spots(&f, e, n, rest, tolerance);
+    int most = fewest(&f);
+    out.count = 0;
+    assert_int_equal(compress_minimal_after(e, n, 1, tolerance, tolerance - rest, &out), DSM_OK);
+    assert_seeded(&r, largest_error(e, n, &out) <= rest + 2e-15);
+    for (int i = 1; i < f.count; ++i) merged += !f.s[i].tall && fabsl(f.s[i].before - f.s[i].after) > rest;
+    if (most < 0) continue;
+    ++judged;
+    assert_seeded(&r, out.count == (size_t)most);
+  }
+  assert_true(judged > seeds / 10 * 9 && merged > 1000);
+  vertices_free(&out);
+}
+
+/* Rays of 16 and a tolerance of one of them, less what storing rounds: only a first step is worth a step. So too where
+ * the share of a ray is no binary number, and where channels differ. */
+static void steps_of_one_ray_merge(void **state) {
+  (void)state;
+  vertices out = {0};
+  for (int rays = 4; rays < 40; ++rays)
+    for (int channels = 1; channels <= 3; channels += 2) {
+      vertex e[80];
+      for (int i = 0; i < rays; ++i) {
+        e[2 * i] = grey(5 + i + 0.3 * (i % 3), (double)(rays - i) / rays);
+        e[2 * i + 1] = grey(e[2 * i].z, (double)(rays - i - 1) / rays);
+        if (channels == 3) e[2 * i].v.c[2] = e[2 * i + 1].v.c[2] = 1;
+      }
+      out.count = 0;
+      assert_int_equal(compress_minimal_after(e, 2 * (size_t)rays, channels, 1.0 / rays, 1e-5, &out), DSM_OK);
+      assert_true(out.count < (size_t)rays / 2 + 3);
+      out.count = 0;
+      assert_int_equal(compress_minimal_after(e, 2 * (size_t)rays, channels, 0.99 / rays, 1e-5, &out), DSM_OK);
+      assert_true(out.count == 2 * (size_t)rays - 1);
+    }
+  vertices_free(&out);
 }
 
 static void hard_functions_stay_within_the_tolerance(void **state) {
@@ -532,6 +583,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(known_counts),
     cmocka_unit_test(count_is_the_fewest),
+    cmocka_unit_test(spending_makes_no_step_tall),
+    cmocka_unit_test(steps_of_one_ray_merge),
     cmocka_unit_test(hard_functions_stay_within_the_tolerance),
     cmocka_unit_test(hair_needs_fewer),
     cmocka_unit_test(a_million_vertices),

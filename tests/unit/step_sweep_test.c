@@ -8,6 +8,7 @@
 
 #include "bake/step_sweep.h"
 #include "core/transmittance.h"
+#include "noise_direct.h"
 #include "random.h"
 
 /* A batch of surfaces that owns its memory. */
@@ -129,7 +130,7 @@ static void the_average_is_the_direct_sum(void **state) {
 static void the_noise_is_the_measured_noise(void **state) {
   (void)state;
   step_scratch scratch = {0};
-  noise_profile got = {0}, want = {0};
+  noise_profile got = {0};
   vertices mean = {0};
   size_t noisy = 0;
   for (uint64_t seed = 0; seed < 3000; ++seed) {
@@ -140,18 +141,19 @@ static void the_noise_is_the_measured_noise(void **state) {
     build(&b, &f);
     mean.count = 0;
     assert_int_equal(step_sweep(&b.in, &scratch, &got, &mean), DSM_OK);
-    assert_int_equal(noise_measure(&want, &f.in, &mean), DSM_OK);
+    double *want = malloc((mean.count + 1) * sizeof *want);
+    noise_direct(&f.in, &mean, want);
     for (size_t i = 1; i < mean.count; i += 2) {
-      assert_seeded(&r, fabs(got.allowed[i] - want.allowed[i]) < 1e-7);   /* the root of what has rounded */
+      assert_seeded(&r, fabs(got.allowed[i] - want[i]) < 1e-7);   /* the root of what has rounded */
       assert_seeded(&r, got.allowed[i - 1] == (i > 1 ? got.allowed[i - 2] : 0));
       noisy += got.allowed[i] > 0;
     }
+    free(want);
     functions_free(&f);
     batch_free(&b);
   }
   assert_true(noisy > 10000);
   noise_free(&got);
-  noise_free(&want);
   vertices_free(&mean);
   step_free(&scratch);
 }

@@ -194,23 +194,53 @@ static void fog_has_the_fewest_vertices_on_the_curve(void **state) {
     }
 }
 
-/* Extinction a*z: exp(-a z^2 / 2) at the ends of a thousand short spans, which need no vertices between. */
+/* Extinction a*z, that is exp(-a z^2 / 2), in short spans: one chord takes many of them, and every vertex is
+ * on the curve. A curve whose second derivative is f needs about the integral of sqrt(|f| / 8e) chords. */
 static void linear_fog(void **state) {
   (void)state;
-  enum { n = 1000 };
+  enum { n = 300 };
   event e[n];
-  double a = 3, far = 2;
+  double a = 3, far = 2, chords = 0;
+  const double tolerances[] = {0.2, 0.02, 0.002};
   for (int i = 0; i < n; ++i) {
     double z0 = far * i / n, z1 = far * (i + 1) / n;
     e[i] = span(z0, z1, a * (z1 * z1 - z0 * z0) / 2);
+    chords += far / n * sqrt(fabs(a * a * z0 * z0 - a) * exp(-a * z0 * z0 / 2) / 8);
   }
-  vertices f = build(e, n, 0.002);
-  assert_int_equal(f.count, n + 1);
-  for (int i = 0; i <= n; ++i) {
-    double z = far * i / n;
-    assert_true(f.data[i].z == z && fabs(f.data[i].v.c[0] - exp(-a * z * z / 2)) < 1e-13);
+  for (int t = 0; t < 3; ++t) {
+    double error = tolerances[t] / 4;
+    vertices f = build(e, n, tolerances[t]);
+    assert_true(worst_error(e, n, &f) <= error * (1 + 1e-5));
+    assert_true((double)f.count <= 3 + 1.2 * chords / sqrt(error));
+    for (size_t i = 0; i < f.count; ++i)
+      assert_true(fabs(f.data[i].v.c[0] - exp(-a * f.data[i].z * f.data[i].z / 2)) < 1e-13);
+    assert_true(f.data[f.count - 1].z == far);
+    vertices_free(&f);
   }
-  vertices_free(&f);
+}
+
+/* What varies less than the error, in colour, with gaps between spans and a pane in the middle. */
+static void thin_chains_are_merged(void **state) {
+  (void)state;
+  enum { n = 100 };
+  event e[n];
+  for (uint64_t seed = 0; seed < 30; ++seed) {
+    rng r = rng_seeded(seed);
+    double z = 1, tolerance = rng_scale(&r, 1e-3, 0.3), scale = rng_scale(&r, 1e-4, 1e4);
+    int gaps = rng_below(&r, 2) == 0, grey = rng_below(&r, 2) == 0;
+    for (int i = 0; i < n; ++i) {
+      double back = z + rng_unit(&r);
+      e[i] = (event){z * scale, back * scale, rgb_grey(1), 0};
+      for (int c = 0; c < 3; ++c)
+        e[i].transmittance.c[c] = c && grey ? e[i].transmittance.c[0] : exp(-rng_scale(&r, 1e-5, 0.02));
+      if (i == n / 2) e[i] = (event){z * scale, z * scale, {{0.5, 0.5, grey ? 0.5 : 1}}, 0};
+      else z = back + (gaps && i % 7 == 0 ? rng_unit(&r) : 0);
+    }
+    vertices f = build(e, n, tolerance);
+    assert_seeded(&r, worst_error(e, n, &f) <= tolerance / 4 * (1 + 1e-5) + 1e-12);
+    assert_seeded(&r, tolerance < 0.05 || f.count < n / 2);
+    vertices_free(&f);
+  }
 }
 
 /* Fog, a second fog inside it, a glass pane inside both: each stretch in closed form. */
@@ -344,6 +374,7 @@ int main(void) {
     cmocka_unit_test(no_vertex_without_need),
     cmocka_unit_test(fog_has_the_fewest_vertices_on_the_curve),
     cmocka_unit_test(linear_fog),
+    cmocka_unit_test(thin_chains_are_merged),
     cmocka_unit_test(glass_in_fog_in_fog),
     cmocka_unit_test(dense_sheet_leaves_no_trace),
     cmocka_unit_test(span_of_transmittance_zero_ends_dark),

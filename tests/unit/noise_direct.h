@@ -1,32 +1,12 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-#include "bake/noise_profile.h"
+/* The noise of an average, pair of neighbouring rays by pair: what average_and_noise and step_sweep are held against. */
+#ifndef DSM_TESTS_NOISE_DIRECT_H
+#define DSM_TESTS_NOISE_DIRECT_H
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-dsm_result noise_reserve(noise_profile *s, size_t count)
-{
-  if (s->room < count) {
-    noise_free(s);
-    size_t room = count + count / 2;
-    s->allowed = malloc(room * sizeof *s->allowed);
-    s->pairs = malloc(room * sizeof *s->pairs);
-    if (!s->allowed || !s->pairs) {
-      noise_free(s);
-      return DSM_NO_MEMORY;
-    }
-    s->room = room;
-  }
-  return DSM_OK;
-}
-
-void noise_free(noise_profile *s)
-{
-  free(s->allowed);
-  free(s->pairs);
-  *s = (noise_profile){0};
-}
+#include "core/average.h"
 
 /* The first vertex of the average at or behind z. */
 static size_t first_not_before(const vertices *mean, double z)
@@ -53,13 +33,13 @@ static size_t last_not_behind(const vertices *mean, double z)
 
 /* One ray's function, read from front to back. */
 typedef struct {
-  const vertex *next, *end;
+  const vertex *first, *next, *end;
   vertex behind;         /* value behind the vertices read so far */
 } reader;
 
 static reader reader_of(const average_input *in, uint32_t ray)
 {
-  return (reader){in->all + in->first[ray], in->all + in->first[ray + 1], {-INFINITY, rgb_grey(1)}};
+  return (reader){in->all + in->first[ray], in->all + in->first[ray], in->all + in->first[ray + 1], {-INFINITY, rgb_grey(1)}};
 }
 
 static double next_depth(const reader *r)
@@ -70,7 +50,7 @@ static double next_depth(const reader *r)
 /* The value just in front of depth z, which is not behind the next vertex. */
 static rgb value_before(const reader *r, double z)
 {
-  if (r->next == r->end || !(r->next->z > r->behind.z) || r->behind.z == -INFINITY)
+  if (r->next == r->end || !(r->next->z > r->behind.z) || r->next == r->first)
     return r->behind.v;
   return rgb_lerp(r->behind.v, r->next->v, (z - r->behind.z) / (r->next->z - r->behind.z));
 }
@@ -91,7 +71,7 @@ static double square_gap(rgb a, rgb b)
 
 /* Adds the squared difference of two rays where they differ, as what a running sum changes by: each stretch
  * between two of their depths costs two searches, however many vertices of other rays it spans. */
-static void add_pair(reader a, reader b, const vertices *mean, noise_profile *s)
+static void add_pair(reader a, reader b, const vertices *mean, double *squares, double *pairs)
 {
   for (;;) {
     double from = fmax(a.behind.z, b.behind.z), to = fmin(next_depth(&a), next_depth(&b));
@@ -102,11 +82,11 @@ static void add_pair(reader a, reader b, const vertices *mean, noise_profile *s)
     if (square > 0) {
       size_t i = last_not_behind(mean, from), j = to < INFINITY ? first_not_before(mean, to) : mean->count;
       if (i < j) {
-        s->allowed[i] += square;
-        s->pairs[i] += 1;
+        squares[i] += square;
+        pairs[i] += 1;
         if (j < mean->count) {
-          s->allowed[j] -= square;
-          s->pairs[j] -= 1;
+          squares[j] -= square;
+          pairs[j] -= 1;
         }
       }
     }
@@ -117,26 +97,22 @@ static void add_pair(reader a, reader b, const vertices *mean, noise_profile *s)
   }
 }
 
-dsm_result noise_measure(noise_profile *s, const average_input *in, const vertices *mean)
+/* What the noise of `in`, whose average is `mean`, allows from each vertex to the next, into `allowed`. */
+static void noise_direct(const average_input *in, const vertices *mean, double *allowed)
 {
   size_t n = mean->count;
-  if (n == 0)
-    return DSM_OK;
-  dsm_result result = noise_reserve(s, n);
-  if (result != DSM_OK)
-    return result;
-  memset(s->allowed, 0, n * sizeof *s->allowed);
-  memset(s->pairs, 0, n * sizeof *s->pairs);
+  double *squares = calloc(n + 1, sizeof *squares), *pairs = calloc(n + 1, sizeof *pairs), square = 0, pair = 0;
   for (uint32_t k = 0; k + 1 < in->count; k++)
-    add_pair(reader_of(in, k), reader_of(in, k + 1), mean, s);
-
-  double squares = 0, pairs = 0;
+    add_pair(reader_of(in, k), reader_of(in, k + 1), mean, squares, pairs);
   for (size_t i = 0; i < n; i++) {
-    squares += s->allowed[i];
-    pairs += s->pairs[i];
-    if (pairs < 0.5)   /* whole numbers, and exact; the squares have rounded */
-      squares = 0;
-    s->allowed[i] = noise_allowed(squares, pairs, in->count);
+    square += squares[i];
+    pair += pairs[i];
+    if (pair < 0.5)   /* whole numbers, and exact; the squares have rounded */
+      square = 0;
+    allowed[i] = noise_allowed(square, pair, in->count);
   }
-  return DSM_OK;
+  free(squares);
+  free(pairs);
 }
+
+#endif

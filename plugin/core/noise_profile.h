@@ -8,12 +8,13 @@
  * 1). For an edge it has the right rate, N^-3/2, as only neighbours that the edge parts count; in a gradient
  * it overrates by a constant; and it is not 0 wherever any two rays disagree.
  */
-#ifndef DSM_BAKE_NOISE_PROFILE_H
-#define DSM_BAKE_NOISE_PROFILE_H
+#ifndef DSM_CORE_NOISE_PROFILE_H
+#define DSM_CORE_NOISE_PROFILE_H
 
 #include <math.h>
+#include <stddef.h>
 
-#include "core/average.h"
+#include "dsm.h"
 
 /* LV 4: half of the worst noise that this many rays can have. */
 static inline double noise_ceiling(double rays) { return 0.25 / sqrt(rays); }
@@ -36,17 +37,11 @@ static inline double noise_allowed(double squares, double pairs, double rays)
 typedef struct {
   double *allowed;   /* error that is noise, from a vertex of the average to the next, or to infinity; of the
                         vertices at one depth the last tells */
-  double *pairs;     /* scratch */
   size_t room;
 } noise_profile;
 
 /* Room for so many vertices; what they hold is not kept. */
 dsm_result noise_reserve(noise_profile *profile, size_t count);
-
-/* Measures `in` (equal weights, rays in the order of pixel_sample_path, so that neighbours come one after the
- * other), whose average is `mean`, into profile->allowed, one number a vertex. 0 where the rays agree, or for
- * a single ray. */
-dsm_result noise_measure(noise_profile *profile, const average_input *in, const vertices *mean);
 
 /* Root mean square of `allowed` over the `count` vertices of the average. */
 static inline double noise_rms(const noise_profile *profile, size_t count)
