@@ -28,14 +28,14 @@ cut_out() {  # $1: picture, $2: result, $3: X:Y:w:h in averaged pixels, $4: how 
   "$OIIOTOOL" "$1" --ch R,G,B --cut "$((w * $4))x$((h * $4))+$((x * $4))+$((y * $4))" --resize:filter=box "${w}x$h" -o "$2"
 }
 
-# What the log says, as "parse parse-cpu pixels rays lookups bytes vertices uncompressed"; numbers that it does not hold are 0.
+# What the log says, as "parse parse-cpu pixels rays lookups bytes vertices uncompressed trace"; numbers that it does not hold are 0.
 from_log() {
   tr '\r' '\n' <"$1" | awk '
-    /Time:/ { reading = /Parse Time:|Bounding Time:/; s = $0; sub(/.*\(/, "", s); if (reading) parse += s }
+    /Time:/ { reading = /Parse Time:|Bounding Time:/; s = $0; sub(/.*\(/, "", s); if (reading) parse += s; if (/Trace Time:/) trace = s }
     /CPU-seconds total/ && reading { s = $0; sub(/.* with /, "", s); cpu += s }
     /^Pixels baked:/ { pixels = $3 } /^Light rays:/ { rays = $3 } /^Look-ups:/ { lookups = $2 + 0 } /^Bytes:/ { bytes = $2 }
     /^Vertices per pixel:/ { vertices = $4; before = $7 + 0 }
-    END { printf "%.3f %.3f %d %d %d %d %s %s\n", parse, cpu, pixels, rays, lookups, bytes, vertices + 0, before + 0 }'
+    END { printf "%.3f %.3f %d %d %d %d %s %s %.3f\n", parse, cpu, pixels, rays, lookups, bytes, vertices + 0, before + 0, trace }'
 }
 
 # Seconds that POV-Ray takes for nothing: it waits for its own threads. $1: folder, $2: how often; prints their median.

@@ -112,7 +112,7 @@ TEXT
   done
   cat <<'TEXT'
 <h2>Lokovic &amp; Veach 2000</h2>
-<p>The shadow of the hair ball on the floor, from nearby. Times are those of looking up: the picture (9 rays an image pixel), map from a file, less the
+<p>The shadow of the hair ball on the floor, from nearby. Times are those of looking up: POV-Ray's own seconds of tracing the picture (9 rays an image pixel) with the map from a file, less those of the
 picture without shadows, as in the paper. Errors are those of one look-up an image pixel. The region of PCF is as wide as a pixel of the deep map's (figure 6: of the smallest map). Theirs is a 1999 scan-line renderer: compare ratios.</p>
 <h3>Figure 6</h3>
 TEXT

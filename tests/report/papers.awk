@@ -72,7 +72,7 @@ function rsc1(  i, k, s, n, first, second, none, m, pictures, theirs) {
       n = "rsc/" pictures[i] "/" m "/" s
       none = get("rsc/" pictures[i] "/none/-", "seconds")
       first = get("bake/" pictures[i] "/" m "/" s, "seconds"); second = get(n, "seconds")
-      print cells((k == 1 ? theirs[i] : "||||||") "|" called(m) "|" (ok(n) ? seconds(none) "|" seconds(first) "|" seconds(second) "|" seconds(first + second) "|" \
+      print cells((k == 1 ? theirs[i] : "||||||") "|" (m == "deep" ? "deep map" : called(m)) "|" (ok(n) ? seconds(none) "|" seconds(first) "|" seconds(second) "|" seconds(first + second) "|" \
         (none > 0 ? sprintf("%.0f", 100 * ((first + second) / none - 1)) : "") : missing(n) "||||"))
     }
   print cells("Red's Dream|261.3|2|55.3|332.1|387.4|48.4|<em>their scene is not public</em>|||||")
