@@ -5,11 +5,25 @@
 //
 // Declare=MS=20       media samples of a ray
 // Declare=Density=4   extinction where the cloud is thickest, a unit of length
+// Declare=White=0     1: black sky, white light and no glow, so that the picture shows the light that shadows leave
+// Declare=Resolution=128 Declare=Samples=4   of the map
+// Declare=Tolerance=-1 Declare=Blur=0   as in deep_shadow; -1: automatic
+// Declare=File=0      1: the map is saved as cloud1.exr; 2: it is loaded from there
+// Declare=Pcf=0       1: shadow_map (percentage closer filtering) in place of deep_shadow; then NumSamples in place of
+//                     Samples, and MinSamples, ResFactor, MinSize, Bias0 and Bias1: words of shadow_map, as its paper calls them
 #version 3.7;
 global_settings { assumed_gamma 1 }
 
-#ifndef (MS)      #declare MS = 20; #end
-#ifndef (Density) #declare Density = 4; #end
+#ifndef (MS)         #declare MS = 20; #end
+#ifndef (Density)    #declare Density = 4; #end
+#ifndef (White)      #declare White = 0; #end
+#ifndef (Resolution) #declare Resolution = 128; #end
+#ifndef (Samples)    #declare Samples = 4; #end
+#ifndef (Tolerance)  #declare Tolerance = -1; #end
+#ifndef (Blur)       #declare Blur = 0; #end
+#ifndef (File)       #declare File = 0; #end
+#ifndef (Pcf)        #declare Pcf = 0; #end
+#ifndef (NumSamples) #declare NumSamples = 16; #end
 
 camera {
   location <0, -0.3, -8>
@@ -18,12 +32,29 @@ camera {
   angle 36
 }
 
+// What stands in a light's block: the same words for both kinds of map, but for those that only one has.
+#macro Words(Number)
+  resolution Resolution samples (Pcf ? NumSamples : Samples)
+  #if (File = 1) save_file concat("cloud", str(Number, 0, 0), ".exr") #end
+  #if (File = 2) load_file concat("cloud", str(Number, 0, 0), ".exr") #end
+  #if (Pcf)
+    #ifdef (MinSamples) min_samples MinSamples #end
+    #ifdef (ResFactor) size_factor ResFactor #end
+    #ifdef (MinSize) min_size MinSize #end
+    #ifdef (Bias0) bias Bias0, Bias1 #end
+  #else
+    #if (Tolerance >= 0) tolerance Tolerance #end
+    #if (Blur > 0) blur Blur #end
+  #end
+#end
+
 light_source {
-  <9, 10, -5.5>, rgb <1.0, 0.93, 0.82>*3.2
+  <9, 10, -5.5>, rgb #if (White) 3.2 #else <1.0, 0.93, 0.82>*3.2 #end
   spotlight point_at 0 radius 16 falloff 20
-  deep_shadow { resolution 128 samples 4 }
+  #if (Pcf) shadow_map { Words(1) } #else deep_shadow { Words(1) } #end
 }
 
+#if (!White)
 sky_sphere {
   pigment {
     gradient y
@@ -31,6 +62,7 @@ sky_sphere {
     translate -0.25*y
   }
 }
+#end
 
 // Soft balls on a flat base; the turbulence below makes the cauliflower.
 #declare Ball = function (x, y, z, R) { max(0, 1 - (x*x + y*y + z*z)/(R*R)) }
@@ -48,7 +80,7 @@ sphere {
     media {
       method 2 intervals 1 samples MS
       scattering { 1, rgb Density }
-      emission rgb <0.10, 0.13, 0.18>*Density
+      #if (!White) emission rgb <0.10, 0.13, 0.18>*Density #end
       density {
         function { Lobes(x, y, z) }
         warp { turbulence 0.32 octaves 3 lambda 2.6 omega 0.5 }

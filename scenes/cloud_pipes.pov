@@ -5,11 +5,26 @@
 //
 // Declare=MS=20         media samples of a ray
 // Declare=Density=3.2   extinction where the cloud is thickest, a unit of length
+// Declare=White=0       1: black background, white light, all surfaces matte white and no glow, so that the picture shows
+//                       the light that shadows leave
+// Declare=Resolution=512 Declare=Samples=16   of the map
+// Declare=Tolerance=-1 Declare=Blur=0   as in deep_shadow; -1: automatic
+// Declare=File=0        1: the map is saved as cloud_pipes1.exr; 2: it is loaded from there
+// Declare=Pcf=0         1: shadow_map (percentage closer filtering) in place of deep_shadow; then NumSamples in place of
+//                       Samples, and MinSamples, ResFactor, MinSize, Bias0 and Bias1: words of shadow_map, as its paper calls them
 #version 3.7;
 global_settings { assumed_gamma 1 }
 
-#ifndef (MS)      #declare MS = 20; #end
-#ifndef (Density) #declare Density = 3.2; #end
+#ifndef (MS)         #declare MS = 20; #end
+#ifndef (Density)    #declare Density = 3.2; #end
+#ifndef (White)      #declare White = 0; #end
+#ifndef (Resolution) #declare Resolution = 512; #end
+#ifndef (Samples)    #declare Samples = 16; #end
+#ifndef (Tolerance)  #declare Tolerance = -1; #end
+#ifndef (Blur)       #declare Blur = 0; #end
+#ifndef (File)       #declare File = 0; #end
+#ifndef (Pcf)        #declare Pcf = 0; #end
+#ifndef (NumSamples) #declare NumSamples = 16; #end
 
 camera {
   location <0.3, 1.9, -7.6>
@@ -18,21 +33,40 @@ camera {
   angle 40
 }
 
+// What stands in a light's block: the same words for both kinds of map, but for those that only one has.
+#macro Words(Number)
+  resolution Resolution samples (Pcf ? NumSamples : Samples)
+  #if (File = 1) save_file concat("cloud_pipes", str(Number, 0, 0), ".exr") #end
+  #if (File = 2) load_file concat("cloud_pipes", str(Number, 0, 0), ".exr") #end
+  #if (Pcf)
+    #ifdef (MinSamples) min_samples MinSamples #end
+    #ifdef (ResFactor) size_factor ResFactor #end
+    #ifdef (MinSize) min_size MinSize #end
+    #ifdef (Bias0) bias Bias0, Bias1 #end
+  #else
+    #if (Tolerance >= 0) tolerance Tolerance #end
+    #if (Blur > 0) blur Blur #end
+  #end
+#end
+
 light_source {
-  <-5.5, 6.5, -2.0>, rgb <1.0, 0.93, 0.82>*3.3
+  <-5.5, 6.5, -2.0>, rgb #if (White) 1 #else <1.0, 0.93, 0.82>*3.3 #end
   spotlight point_at <0.2, -0.1, 0> radius 22 falloff 40
-  deep_shadow { resolution 512 samples 16 }
+  #if (Pcf) shadow_map { Words(1) } #else deep_shadow { Words(1) } #end
 }
 
-background { rgb <0.16, 0.20, 0.28> }
+background { rgb #if (White) 0 #else <0.16, 0.20, 0.28> #end }
+
+#declare Matte = texture { pigment { rgb 1 } finish { ambient 0 diffuse 1 } }
+#declare Stone = texture { #if (White) Matte #else pigment { rgb <0.40, 0.46, 0.54> } finish { ambient 0.03 diffuse 0.55 } #end }
 
 // Floor and wall.
-box { <-8, -1.9, -6>, <8, -1.8, 3> pigment { rgb <0.40, 0.46, 0.54> } finish { ambient 0.03 diffuse 0.55 } }
-box { <-8, -1.8, 2.9>, <8, 6, 3> pigment { rgb <0.40, 0.46, 0.54> } finish { ambient 0.03 diffuse 0.55 } }
+box { <-8, -1.9, -6>, <8, -1.8, 3> texture { Stone } }
+box { <-8, -1.8, 2.9>, <8, 6, 3> texture { Stone } }
 
 // Pipes, with a flange where they leave the picture's middle.
-#declare Copper = texture { pigment { rgb <0.85, 0.42, 0.22> } finish { ambient 0.04 diffuse 0.5 specular 0.7 roughness 0.02 metallic } }
-#declare Steel = texture { pigment { rgb <0.55, 0.60, 0.66> } finish { ambient 0.04 diffuse 0.5 specular 0.7 roughness 0.02 metallic } }
+#declare Copper = texture { #if (White) Matte #else pigment { rgb <0.85, 0.42, 0.22> } finish { ambient 0.04 diffuse 0.5 specular 0.7 roughness 0.02 metallic } #end }
+#declare Steel = texture { #if (White) Matte #else pigment { rgb <0.55, 0.60, 0.66> } finish { ambient 0.04 diffuse 0.5 specular 0.7 roughness 0.02 metallic } #end }
 #macro Pipe(From, To, R)
   cylinder { From, To, R }
   #local D = vnormalize(To - From);
@@ -56,7 +90,7 @@ sphere {
     media {
       method 2 intervals 1 samples MS
       scattering { 1, rgb Density }
-      emission rgb <0.025, 0.032, 0.046>*Density
+      #if (!White) emission rgb <0.025, 0.032, 0.046>*Density #end
       density {
         spherical
         scale 0.78

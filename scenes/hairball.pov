@@ -10,6 +10,8 @@
 // Declare=Close=0       1: the first light alone, and its shadow on the floor from nearby (their figure 7)
 // Declare=Tolerance=-1 Declare=Blur=0 Declare=Cache=1024   as in deep_shadow; -1: automatic
 // Declare=File=0        1: the maps are saved as hairball1.exr, ...; 2: they are loaded from there
+// Declare=Pcf=0         1: shadow_map (percentage closer filtering) in place of deep_shadow; then NumSamples in place of
+//                       Samples, and MinSamples, ResFactor, MinSize, Bias0 and Bias1: words of shadow_map, as its paper calls them
 #version 3.7;
 global_settings { assumed_gamma 1 }
 
@@ -23,6 +25,8 @@ global_settings { assumed_gamma 1 }
 #ifndef (Cache)      #declare Cache = 1024; #end
 #ifndef (Close)      #declare Close = 0; #end
 #ifndef (File)       #declare File = 0; #end
+#ifndef (Pcf)        #declare Pcf = 0; #end
+#ifndef (NumSamples) #declare NumSamples = 16; #end
 
 #declare HairRadius = 0.001;
 #declare Segments = 12;       // cylinders a curled hair
@@ -37,14 +41,20 @@ camera {
   angle #if (Close) 22 #else 36 #end
 }
 
-#macro Shadow(Number)
-  deep_shadow {
-    resolution Resolution samples Samples cache Cache
+// What stands in a light's block: the same words for both kinds of map, but for those that only one has.
+#macro Words(Number)
+  resolution Resolution samples (Pcf ? NumSamples : Samples) cache Cache
+  #if (File = 1) save_file concat("hairball", str(Number, 0, 0), ".exr") #end
+  #if (File = 2) load_file concat("hairball", str(Number, 0, 0), ".exr") #end
+  #if (Pcf)
+    #ifdef (MinSamples) min_samples MinSamples #end
+    #ifdef (ResFactor) size_factor ResFactor #end
+    #ifdef (MinSize) min_size MinSize #end
+    #ifdef (Bias0) bias Bias0, Bias1 #end
+  #else
     #if (Tolerance >= 0) tolerance Tolerance #end
     #if (Blur > 0) blur Blur #end
-    #if (File = 1) save_file concat("hairball", str(Number, 0, 0), ".exr") #end
-    #if (File = 2) load_file concat("hairball", str(Number, 0, 0), ".exr") #end
-  }
+  #end
 #end
 
 #if (White) // a third each, so that full light is 1
@@ -60,18 +70,18 @@ camera {
 light_source {
   <-5.0, 8.0, -5.5>, Key
   spotlight point_at <0.1, -0.2, 0> radius 12 falloff 46
-  Shadow(1)
+  #if (Pcf) shadow_map { Words(1) } #else deep_shadow { Words(1) } #end
 }
 #if (!Close)
 light_source {
   <7.0, 5.5, -4.5>, Fill
   spotlight point_at <0, -0.2, 0> radius 12 falloff 46
-  Shadow(2)
+  #if (Pcf) shadow_map { Words(2) } #else deep_shadow { Words(2) } #end
 }
 light_source {
   <1.5, 8.0, 6.5>, Rim
   spotlight point_at <0, -0.2, 0> radius 12 falloff 46
-  Shadow(3)
+  #if (Pcf) shadow_map { Words(3) } #else deep_shadow { Words(3) } #end
 }
 #end
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// shadow_error REFERENCE IMAGE: how far two pictures of the same size differ, over red, green and blue as they stand
-// (linear values: give it OpenEXR). Prints "rmse max share"; share is that of the pixels of which any channel differs by
-// more than 0.1. Exit status 2: a file cannot be read, sizes differ, or a value is not finite.
+// shadow_error REFERENCE IMAGE [X Y]: how far two pictures differ, over red, green and blue as they stand (linear values: give it
+// OpenEXR). They are of one size, or the reference is what the image shows from column X and row Y on. Prints "rmse max share";
+// share is that of the pixels of which any channel differs by more than 0.1. Exit status 2: a file cannot be read, sizes do not
+// fit, or a value is not finite.
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -50,27 +52,31 @@ bool read(const std::string &name, Picture &picture)
 
 int main(int argc, char **argv)
 {
-    if (argc != 3) {
-        std::fprintf(stderr, "usage: shadow_error REFERENCE IMAGE\n");
+    if (argc != 3 && argc != 5) {
+        std::fprintf(stderr, "usage: shadow_error REFERENCE IMAGE [X Y]\n");
         return 2;
     }
+    const int left = argc == 5 ? std::atoi(argv[3]) : 0, top = argc == 5 ? std::atoi(argv[4]) : 0;
     Picture reference, image;
     if (!read(argv[1], reference) || !read(argv[2], image))
         return 2;
-    if (reference.width != image.width || reference.height != image.height) {
-        std::fprintf(stderr, "shadow_error: %dx%d is not %dx%d\n", reference.width, reference.height, image.width, image.height);
+    const bool fits = argc == 5 ? left >= 0 && top >= 0 && left + reference.width <= image.width && top + reference.height <= image.height
+                                : reference.width == image.width && reference.height == image.height;
+    if (!fits) {
+        std::fprintf(stderr, "shadow_error: %dx%d at %d,%d does not fit %dx%d\n", reference.width, reference.height, left, top, image.width, image.height);
         return 2;
     }
 
-    const std::size_t pixels = std::size_t(image.width) * image.height;
+    const std::size_t pixels = std::size_t(reference.width) * reference.height;
     double squares = 0, largest = 0;
     std::size_t beyond = 0;
     for (std::size_t pixel = 0; pixel < pixels; pixel++) {
+        const std::size_t there = (pixel / reference.width + top) * image.width + pixel % reference.width + left;
         double worst = 0;
         for (int channel = 0; channel < 3; channel++) {
-            const double difference = double(image.at(pixel, channel)) - double(reference.at(pixel, channel));
+            const double difference = double(image.at(there, channel)) - double(reference.at(pixel, channel));
             if (!std::isfinite(difference)) {
-                std::fprintf(stderr, "shadow_error: a value at pixel %zu,%zu is not finite\n", pixel % image.width, pixel / image.width);
+                std::fprintf(stderr, "shadow_error: a value at pixel %zu,%zu is not finite\n", pixel % reference.width, pixel / reference.width);
                 return 2;
             }
             squares += difference * difference;
