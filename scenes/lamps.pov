@@ -4,12 +4,17 @@
 // Truth: ray-traced, with hard shadows (Shadow_Method=raytraced).
 //
 // In the manner of figure 12 of Reeves, Salesin & Cook. Declare=Resolution=1024, Declare=NumSamples=16, Declare=ResFactor=3
+// Declare=Pcf=0 Declare=Samples=16: a deep_shadow instead, of so many light rays a map pixel
+// Declare=File=1: the maps are saved as lamps1.exr, ...; 2: they are loaded from there
 #version 3.7;
 global_settings { assumed_gamma 1 }
 
 #ifndef (Resolution) #declare Resolution = 1024; #end
 #ifndef (NumSamples) #declare NumSamples = 16; #end
 #ifndef (ResFactor)  #declare ResFactor = 3; #end
+#ifndef (Pcf)        #declare Pcf = 1; #end
+#ifndef (Samples)    #declare Samples = 16; #end
+#ifndef (File)       #declare File = 0; #end
 
 camera {
   location <1, 9, -30>
@@ -18,7 +23,15 @@ camera {
   angle 40
 }
 
-#macro Shadows() shadow_map { resolution Resolution samples NumSamples size_factor ResFactor } #end
+// The light's maps in files, numbered in their order.
+#declare Maps = 0;
+#macro Kept()
+  #declare Maps = Maps + 1;
+  #if (File = 1) save_file concat("lamps", str(Maps, 0, 0), ".exr") #end
+  #if (File = 2) load_file concat("lamps", str(Maps, 0, 0), ".exr") #end
+#end
+
+#macro Shadows() #if (Pcf) shadow_map { resolution Resolution samples NumSamples size_factor ResFactor Kept() } #else deep_shadow { resolution Resolution samples Samples Kept() } #end #end
 
 // The ceiling light.
 light_source { <-14, 34, -16>, rgb <0.52, 0.56, 0.68> spotlight point_at <0, 2, 0> radius 26 falloff 44 Shadows() }

@@ -11,6 +11,8 @@
 // Declare=Bias0=0 Declare=Bias1=0, or 0.2 and 0.3, or 0.3 and 0.4    9   self-shadowing (the default is automatic)
 // Declare=Resolution=256, 512, 1024          10  detail
 // Declare=Colored=1                          11  three coloured lights
+// Declare=Pcf=0 Declare=Samples=16: a deep_shadow instead, of so many light rays a map pixel
+// Declare=File=1: the maps are saved as sphere_plane1.exr, ...; 2: they are loaded from there
 // More: Declare=MinSamples=3 Declare=MinSize=2 Declare=Jittered=0 Declare=Pattern="uniform" (quoted twice for the shell)
 #version 3.7;
 global_settings { assumed_gamma 1 }
@@ -27,6 +29,9 @@ global_settings { assumed_gamma 1 }
 #ifndef (Shadow)     #declare Shadow = 0; #end
 #ifndef (Plain)      #declare Plain = 0; #end
 #ifndef (Colored)    #declare Colored = 0; #end
+#ifndef (Pcf)        #declare Pcf = 1; #end
+#ifndef (Samples)    #declare Samples = 16; #end
+#ifndef (File)       #declare File = 0; #end
 
 #if (Plain)
   #declare NumSamples = 1;
@@ -41,16 +46,24 @@ camera {
   angle 40
 }
 
+// The light's maps in files, numbered in their order.
+#declare Maps = 0;
+#macro Kept()
+  #declare Maps = Maps + 1;
+  #if (File = 1) save_file concat("sphere_plane", str(Maps, 0, 0), ".exr") #end
+  #if (File = 2) load_file concat("sphere_plane", str(Maps, 0, 0), ".exr") #end
+#end
+
 #macro Light(Place, Colour)
   light_source {
     Place, Colour
     spotlight point_at <2, 0, 10> radius 24 falloff 26 tightness 0
-    shadow_map {
+    #if (Pcf) shadow_map {
       resolution Resolution samples NumSamples min_samples MinSamples size_factor ResFactor min_size MinSize
       #if (Bias0 >= 0) bias Bias0, Bias1 #end
       depth_samples #if (Jittered) "jittered" #else "regular" #end
-      pattern Pattern
-    }
+      pattern Pattern Kept()
+    } #else deep_shadow { resolution Resolution samples Samples Kept() } #end
   }
 #end
 
