@@ -139,6 +139,14 @@ static int is_grey(const vertices *v)
   return 1;
 }
 
+/* One ray that ends at once tells nothing of what its neighbours would have met. Its step stays where it is; but coarser
+ * levels, which average such pixels, need not keep all of them. */
+static int is_a_guess(const bake_job *job, const event *events)
+{
+  const rgb *t = &events[0].transmittance;
+  return job->settings->samples == 1 && is_automatic(job->settings) && t->c[0] == 0 && t->c[1] == 0 && t->c[2] == 0;
+}
+
 /* Averages, compresses and keeps one pixel of the batch. */
 static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, const noise_limits *limits,
                              uint32_t first_ray, baked_pixel *pixel, tile_tally *tally)
@@ -177,7 +185,7 @@ static dsm_result bake_pixel(const bake_job *job, bake_scratch *s, const noise_l
     clean = &s->smooth;
   }
   double tolerance = finest_tolerance(job->settings);
-  pixel->tolerance = fmax(pixel->tolerance, tolerance);
+  pixel->tolerance = is_a_guess(job, events) ? noise_ceiling(1) : fmax(pixel->tolerance, tolerance);
   double spent = VALUE_ROUNDING + (kind.volume ? spent_on_volume(job->settings) : 0);
   result = compress_minimal_after(clean->data, clean->count, channels, tolerance, spent, &s->stored);
   pixel->count = s->stored.count - pixel->first;

@@ -70,8 +70,8 @@ static dsm_result make_pixel(pyramid_scratch *s, uint32_t x, uint32_t y, baked_p
     return result;
   out->coloured = coloured;
   out->tolerance = halved(squares, parts);
-  result = compress_minimal(s->average.data, s->average.count, coloured ? 3 : 1,
-                           fmax(0, out->tolerance - VALUE_ROUNDING), &s->stored);
+  result = compress_minimal_after(s->average.data, s->average.count, coloured ? 3 : 1, out->tolerance, VALUE_ROUNDING,
+                                  &s->stored);
   out->count = s->stored.count - out->first;
   return result;
 }

@@ -67,8 +67,8 @@ static dsm_result merge_pixel(const merge_input *in, merge_scratch *s, uint32_t 
   s->average.count = 0;
   result = average_sweep(&functions, &s->heap, &s->average);
   if (result == DSM_OK)
-    result = compress_minimal(s->average.data, s->average.count, pixel->coloured ? 3 : 1, fmax(0, added - VALUE_ROUNDING),
-                             &s->stored);
+    result = compress_minimal_after(s->average.data, s->average.count, pixel->coloured ? 3 : 1, added, VALUE_ROUNDING,
+                                    &s->stored);
   pixel->count = s->stored.count - pixel->first;
   pixel->tolerance = error + added;
   return result;
