@@ -24,7 +24,7 @@ const int kLeastSteps = 4, kMostSteps = 64;
 const double kShortest = 1.0 / 128.0;
 
 /// Share of the tolerance that one step may be wrong by. Steps err to both sides.
-const double kStepShare = 0.4;
+const double kStepShare = 0.3;
 
 /// Share of the tolerance by which light within a span may differ from the exponential.
 const double kSpanShare = 0.5;

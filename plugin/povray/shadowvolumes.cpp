@@ -20,7 +20,7 @@ namespace
 
 /// First steps across the shortest side of a container. What is thinner than one, and of a density that nothing is known
 /// of, may be missed.
-const double kStepsAcross = 20.0;
+const double kStepsAcross = 24.0;
 
 }
 
