@@ -111,7 +111,11 @@ ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : hasVolumes(false)
 	SplitOffOutsized();
 
 	for(vector<ObjectPtr>::const_iterator i(objects.begin()); i != objects.end(); i++)
-		hasVolumes = hasVolumes || HasVolume(*i);
+		if(HasVolume(*i))
+		{
+			hasVolumes = true;
+			volumes.Add(*i);
+		}
 	for(vector<ObjectPtr>::const_iterator i(unmapped.begin()); i != unmapped.end(); i++)
 		hasUnmappedVolumes = hasUnmappedVolumes || HasVolume(*i);
 

@@ -8,6 +8,7 @@
 #include <boost/scoped_ptr.hpp>
 
 #include "backend/shadow/shadowtree.h"
+#include "backend/shadow/shadowvolumes.h"
 
 namespace pov
 {
@@ -29,6 +30,9 @@ class ShadowCasters
 		/// Whether an unmapped object has media or fading: no map can hold that, nor a single shadow test add it.
 		bool HasUnmappedVolumes() const { return hasUnmappedVolumes; }
 
+		/// The media of all objects that maps hold.
+		const ShadowVolumes& Volumes() const { return volumes; }
+
 		/// Objects whose inside holds the point.
 		void Containing(const Vector3d& point, TraceThreadData *thread, vector<ObjectPtr>& out) const;
 
@@ -41,6 +45,7 @@ class ShadowCasters
 		vector<ObjectPtr> unmapped;
 		boost::scoped_ptr<ShadowTree> tree;
 		bool hasVolumes, hasUnmappedVolumes;
+		ShadowVolumes volumes;
 
 		void SplitOffOutsized();
 };

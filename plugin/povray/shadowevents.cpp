@@ -46,7 +46,8 @@ ShadowEvents::ShadowEvents(shared_ptr<SceneData> scene, TraceThreadData *thread,
 	volumes((quality & Q_VOLUME) != 0),
 	containersOf(NULL),
 	probe(Ray::OtherRay, true),
-	shade(Ray::OtherRay, true)
+	shade(Ray::OtherRay, true),
+	media(thread)
 {
 	// maps hold plain filtered shadows; receivers of photons are ray-traced
 	thread->litObjectIgnoresPhotons = true;
@@ -295,19 +296,19 @@ dsm_result ShadowEvents::ReportFade(const Interior& interior, double front, doub
 /// Media count only while every container around is hollow.
 double ShadowEvents::ReportMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, SpanSink& sink)
 {
-	media.clear();
+	media.Clear();
 	for(vector<Interior *>::const_iterator i(inside.begin()); i != inside.end(); i++)
 	{
 		if(!(*i)->hollow)
 			return visible;
 		for(vector<Media>::const_iterator m((*i)->media.begin()); m != (*i)->media.end(); m++)
-			if(m->use_extinction)
-				media.push_back(&*m);
+		{
+			const ShadowMedium *medium = casters.Volumes().Find(&*m);
+			if(medium != NULL)
+				media.Add(*medium);
+		}
 	}
-	if(media.empty())
-		return visible;
-
-	return ShadowMedia(ray, tolerance, threadData, sink).Integrate(media, front, back, visible);
+	return media.Integrate(ray, front, back, visible, tolerance, sink);
 }
 
 }

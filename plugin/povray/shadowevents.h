@@ -55,7 +55,7 @@ class ShadowEvents : public Trace
 		ShadowTree::Stack stack;
 		Ray probe, shade;
 		vector<Interior *> inside;
-		vector<const Media *> media;
+		ShadowMedia media;
 
 		void FindContainers(const LightSource& light);
 		void EnterContainers(const LightSource& light, const dsm_ray& ray);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A transfer function: what a density map makes of its pattern's value, integrated beforehand.
+
+#ifndef POVRAY_BACKEND_SHADOWTRANSFER_H
+#define POVRAY_BACKEND_SHADOWTRANSFER_H
+
+#include "backend/frame.h"
+
+namespace pov
+{
+
+/// Colour as a piecewise linear function of a pattern's value, as Compute_Pigment has it. Because its integral is known,
+/// its mean between two values is exact: no step of the map, however thin, falls between two samples of a ray as long as
+/// the pattern's value is about linear there (Hadwiger et al. 2006, 3.2, without a table in two dimensions).
+class ShadowTransfer
+{
+	public:
+		/// @return     false if the map's colours depend on more than the pattern's value; nothing else may be called then
+		bool Read(const BLEND_MAP *map);
+
+		DblRGBColour At(double value) const;
+		/// The mean over all values between two neighbours, for `count` pairs: means[i] is of values[i] and values[i + 1].
+		void Means(const double *values, int count, DblRGBColour *means) const;
+		/// The least and the most of each channel over all values from `low` to `high`.
+		void Range(double low, double high, DblRGBColour& least, DblRGBColour& most) const;
+
+		/// Where the map bends or steps, in rising order.
+		size_t Count() const { return entries.size(); }
+		double Value(size_t entry) const { return entries[entry].value; }
+	private:
+		struct Entry
+		{
+			double value;
+			DblRGBColour colour;
+			DblRGBColour integral; ///< from the first entry's value to this one's
+			bool operator<(double v) const { return value < v; }
+		};
+		vector<Entry> entries;
+
+		DblRGBColour Integral(double value) const;
+};
+
+}
+
+#endif
