@@ -42,13 +42,13 @@ static int same_projection(const projection *a, const projection *b)
 /* "its origin was <1, 2, 3>, and is <1, 2, 4>" */
 static dsm_result other_place(const char *path, const char *what, const double was[3], const double is[3], map_reason *why)
 {
-  return map_refused(why, "The deep shadow map \"%s\" is of another light: its %s was <%.10g, %.10g, %.10g>, and is "
+  return map_refused(why, "The shadow map \"%s\" is of another light: its %s was <%.10g, %.10g, %.10g>, and is "
                      "<%.10g, %.10g, %.10g>.", path, what, was[0], was[1], was[2], is[0], is[1], is[2]);
 }
 
 static dsm_result other_number(const char *path, const char *what, double was, double is, map_reason *why)
 {
-  return map_refused(why, "The deep shadow map \"%s\" is of another light: its %s was %.10g, and is %.10g.", path, what, was,
+  return map_refused(why, "The shadow map \"%s\" is of another light: its %s was %.10g, and is %.10g.", path, what, was,
                      is);
 }
 
@@ -60,7 +60,7 @@ static double degrees(double cosine)
 static dsm_result compare_light(const dsm_light *is, const dsm_light *was, const char *path, map_reason *why)
 {
   if (is->kind != was->kind)
-    return map_refused(why, "The deep shadow map \"%s\" is of another light: of %s, and this is %s.", path,
+    return map_refused(why, "The shadow map \"%s\" is of another light: of %s, and this is %s.", path,
                        light_words[was->kind], light_words[is->kind]);
   if (!same3(is->origin, was->origin))
     return other_place(path, "origin", was->origin, is->origin, why);
@@ -139,7 +139,7 @@ static dsm_result compare_settings(const map_header *is, const map_header *was, 
     if (!is_of_the_bake(is->block, word) || same_setting(is, was, word))
       continue;
     setting_text then = text_of(was, word), now = text_of(is, word);
-    return map_refused(why, "The deep shadow map \"%s\" was made with other settings: '%s' was %s, and is %s.", path,
+    return map_refused(why, "The shadow map \"%s\" was made with other settings: '%s' was %s, and is %s.", path,
                        block->parameters[i].name, then.text, now.text);
   }
   return DSM_OK;
@@ -154,12 +154,12 @@ static dsm_result compare_scene(const map_header *is, const map_header *was, con
     both |= same && strcmp(is->scenes[0].probes, was->scenes[i].probes) == 0;
   }
   if (!casters)
-    return map_refused(why, "The deep shadow map \"%s\" is of another scene: the objects that cast shadows are not where they "
+    return map_refused(why, "The shadow map \"%s\" is of another scene: the objects that cast shadows are not where they "
                        "were, or not the same.", path);
   if (!same_projection(&is->projection, &was->projection))
-    return map_refused(why, "The deep shadow map \"%s\" has another frame than this light asks for.", path);
+    return map_refused(why, "The shadow map \"%s\" has another frame than this light asks for.", path);
   if (!both)
-    return map_refused(why, "The deep shadow map \"%s\" is of another scene: the objects that cast shadows are where they "
+    return map_refused(why, "The shadow map \"%s\" is of another scene: the objects that cast shadows are where they "
                        "were, but light rays meet something else.", path);
   return DSM_OK;
 }

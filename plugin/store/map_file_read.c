@@ -25,12 +25,12 @@ struct map_file {
 
 static dsm_result cannot_load(const char *path, const deep_error *error, map_reason *why)
 {
-  return map_refused(why, "The deep shadow map \"%s\" cannot be used: there is no OpenImageIO (%s).", path, error->text);
+  return map_refused(why, "The shadow map \"%s\" cannot be used: there is no OpenImageIO (%s).", path, error->text);
 }
 
 static dsm_result damaged(const char *path, const deep_error *error, map_reason *why)
 {
-  return map_refused(why, "The deep shadow map \"%s\" is damaged or cut off (%s).", path, error->text);
+  return map_refused(why, "The shadow map \"%s\" is damaged or cut off (%s).", path, error->text);
 }
 
 dsm_result map_digest(const void *bytes, size_t size, char out[DIGEST_CHARS], map_reason *why)
@@ -49,7 +49,7 @@ static dsm_result cannot_read(const char *path, int error, map_reason *why)
     return map_refused(why, "There is no deep shadow map \"%s\".", path);
   if (strerror_r(error, reason, sizeof reason))
     snprintf(reason, sizeof reason, "error %d", error);
-  return map_refused(why, "The deep shadow map \"%s\" cannot be read: %s.", path, reason);
+  return map_refused(why, "The shadow map \"%s\" cannot be read: %s.", path, reason);
 }
 
 /* OpenImageIO has the same words for whatever it cannot open. */
@@ -62,7 +62,7 @@ static dsm_result check_kind(const char *path, uint64_t *size, map_reason *why)
   if (stat(path, &there))
     return cannot_read(path, errno, why);
   if (!S_ISREG(there.st_mode))
-    return map_refused(why, "The deep shadow map \"%s\" cannot be read: this is not the name of a file.", path);
+    return map_refused(why, "The shadow map \"%s\" cannot be read: this is not the name of a file.", path);
   FILE *file = fopen(path, "rb");
   if (!file)
     return cannot_read(path, errno, why);
@@ -91,7 +91,7 @@ static dsm_result read_table(map_file *file, const map_header *header, map_reaso
     if (!tile_table_read(file->exr, file->reader, &file->parts, file->records, &seal, &error))
       result = damaged(file->path, &error, why);
     else if (seal != map_seal(list.items, list.count, file->records, file->parts.tile_count))
-      result = map_refused(why, "The deep shadow map \"%s\" is damaged: its header and its tiles do not belong together.",
+      result = map_refused(why, "The shadow map \"%s\" is damaged: its header and its tiles do not belong together.",
                            file->path);
   }
   else
@@ -123,9 +123,9 @@ static dsm_result check_content(map_file *file, uint64_t size, map_header *heade
   map_parts_lay(&file->parts, &header->projection, map_header_channels(header));
   file->channels = map_header_channels(header);
   if (file->parts.tile_count > size / LEAST_TILE)
-    result = map_refused(why, "The deep shadow map \"%s\" is damaged or cut off: it is too short for its tiles.", file->path);
+    result = map_refused(why, "The shadow map \"%s\" is damaged or cut off: it is too short for its tiles.", file->path);
   else if (!file->exr->has_parts(file->reader, file->parts.parts, file->parts.count))
-    result = map_refused(why, "The deep shadow map \"%s\" is damaged: it does not have the parts that its header tells of.",
+    result = map_refused(why, "The shadow map \"%s\" is damaged: it does not have the parts that its header tells of.",
                          file->path);
   else if (!table_is_sound(file))
     result = map_refused(why, "The deep shadow map \"%s\" is damaged or cut off: its table of tiles is not where it should be.",
@@ -202,7 +202,7 @@ dsm_result map_file_tile(map_file *file, const tile_key *key, const tile **out, 
   dsm_result result = read_tile(file, key, out, &error);
   pthread_mutex_unlock(&file->mutex);
   if (result == DSM_REFUSED)
-    map_refused(why, "The deep shadow map \"%s\" is damaged at tile %u, %u of level %u of face %u (%s).", file->path,
+    map_refused(why, "The shadow map \"%s\" is damaged at tile %u, %u of level %u of face %u (%s).", file->path,
                 (unsigned)key->x, (unsigned)key->y, (unsigned)key->level, (unsigned)key->face, error.text);
   else if (result != DSM_OK)
     map_no_memory(why);

@@ -25,7 +25,7 @@ typedef struct {
 
 static dsm_result cannot_write(const writing *w, const deep_error *error)
 {
-  return map_refused(w->why, "The deep shadow map \"%s\" cannot be written: %s.", w->path, error->text);
+  return map_refused(w->why, "The shadow map \"%s\" cannot be written: %s.", w->path, error->text);
 }
 
 dsm_result map_file_writable(const char *path, map_reason *why)
@@ -33,7 +33,7 @@ dsm_result map_file_writable(const char *path, map_reason *why)
   new_file file;
   deep_error error;
   if (!deep_exr_load(&error))
-    return map_refused(why, "The deep shadow map \"%s\" cannot be written: there is no OpenImageIO (%s).", path, error.text);
+    return map_refused(why, "The shadow map \"%s\" cannot be written: there is no OpenImageIO (%s).", path, error.text);
   dsm_result result = new_file_create(path, &file, why);
   if (result == DSM_OK)
     new_file_discard(&file);
@@ -76,7 +76,7 @@ static dsm_result write_tile(writing *w, uint32_t part, const tile_key *key, con
   deep_error error = {""};
   uint64_t number = map_parts_number(&w->parts, key);
   if (t->kind == TILE_FAILED)
-    return map_refused(w->why, "The deep shadow map \"%s\" is not saved: some of its tiles could not be baked.", w->path);
+    return map_refused(w->why, "The shadow map \"%s\" is not saved: some of its tiles could not be baked.", w->path);
   w->records[number] = t->kind == TILE_LIT ? record_of_lit : tile_record_of(t, number);
   dsm_result result = DSM_OK;
   if (t->kind == TILE_LIT && w->channels != DEPTH_CHANNELS)
@@ -86,7 +86,7 @@ static dsm_result write_tile(writing *w, uint32_t part, const tile_key *key, con
   if (result == DSM_NO_MEMORY)
     return map_no_memory(w->why);
   if (result != DSM_OK) {
-    map_refused(w->why, "The deep shadow map \"%s\" cannot be written: colour is not where it should be.", w->path);
+    map_refused(w->why, "The shadow map \"%s\" cannot be written: colour is not where it should be.", w->path);
     return result;
   }
   return w->exr->write(w->writer, part, key->x, key->y, &w->deep, &error) ? DSM_OK : cannot_write(w, &error);
@@ -137,7 +137,7 @@ static dsm_result check_written(const writing *w, const char *temporary)
   map_reason ignored = {text, sizeof text};
   dsm_result result = map_file_open(temporary, &header, &file, &ignored);
   if (result == DSM_REFUSED)
-    return map_refused(w->why, "The deep shadow map \"%s\" cannot be written: what was written cannot be read again; is the "
+    return map_refused(w->why, "The shadow map \"%s\" cannot be written: what was written cannot be read again; is the "
                        "disk full?", w->path);
   if (result != DSM_OK)
     return map_no_memory(w->why);

@@ -383,7 +383,7 @@ static dsm_result check_texts(const getter *g, const map_header *h, const char *
   dsm_result result = map_header_write(h, &list);
   for (uint32_t i = 0; i < list.count && result == DSM_OK; i++)
     if (strcmp(text_of(g, list.items[i].name), list.items[i].text) != 0)
-      result = map_refused(why, "The deep shadow map \"%s\" is damaged: \"%s\" in its header is not what it should be.",
+      result = map_refused(why, "The shadow map \"%s\" is damaged: \"%s\" in its header is not what it should be.",
                            path, list.items[i].name);
   attribute_list_free(&list);
   return result == DSM_NO_MEMORY ? map_no_memory(why) : result;
@@ -399,7 +399,7 @@ dsm_result map_header_read(const char *(*get)(void *data, const char *name), voi
     return map_refused(why, "\"%s\" is an OpenEXR image, but not a deep shadow map.", path);
   unsigned long number = strtoul(format, NULL, 10);
   if (number > MAP_FORMAT)
-    return map_refused(why, "The deep shadow map \"%s\" has format %lu, and this program knows only formats up to %u: it was "
+    return map_refused(why, "The shadow map \"%s\" has format %lu, and this program knows only formats up to %u: it was "
                        "written by a newer one.", path, number, MAP_FORMAT);
   number_style style;
   if (!plain_numbers(&style))
@@ -410,7 +410,7 @@ dsm_result map_header_read(const char *(*get)(void *data, const char *name), voi
           && read_content(&g, header);
   restore_numbers(&style);
   dsm_result result = read ? check_texts(&g, header, path, why)
-                           : map_refused(why, "The deep shadow map \"%s\" is damaged: its header cannot be read.", path);
+                           : map_refused(why, "The shadow map \"%s\" is damaged: its header cannot be read.", path);
   if (result != DSM_OK)
     map_header_free(header);
   return result;

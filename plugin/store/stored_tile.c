@@ -39,8 +39,10 @@ tile_record tile_record_of(const tile *t, uint64_t number)
     sum = checksum_add(sum, v.depth, v.count * sizeof *v.depth);
     sum = checksum_add(sum, v.value, (size_t)v.count * v.channels * sizeof *v.value);
   }
-  if (tile_has_depths(t))
+  if (tile_has_depths(t)) {
     sum = checksum_add(sum, depths_of(t)->depth, sizeof depths_of(t)->depth);
+    sum = checksum_add(sum, &depths_of(t)->most, sizeof depths_of(t)->most);   /* and mixes the last depth's sign in */
+  }
   record.checksum = (uint32_t)(sum ^ sum >> 32);
   return record;
 }

@@ -377,6 +377,23 @@ static void walls(void **state) {
   }
 }
 
+/* A tile whose pixels all have one depth is answered without a look at them only where every draw of the bias agrees. */
+static void between_the_bounds(void **state) {
+  (void)state;
+  shape sheet = sheet_at(5, 1, 0, 0, 0);
+  const char *const *orders[] = {WORDS("shadow_map", "resolution 130", "bias 0.2 1.2"), WORDS("shadow_map", "resolution 130", "bias 1.2 0.2")};
+  for (int k = 0; k < 2; ++k) {
+    stage s;
+    stage_open(&s, &sheet, 1, parallel_at(0, 0, 0, 0, 0, 1), orders[k]);
+    rng r = rng_seeded(6);
+    for (double z = 4.9; z < 6.6; z += 0.1) {
+      double expected = fmax(0, fmin(1, (z - 5.2) / 1));
+      assert_seeded(&r, fabs(1 - mean_light(&s, in_air(0.1, -0.2, z), 300, &r) - expected) < 0.03);
+    }
+    stage_close(&s);
+  }
+}
+
 /* A tile that failed is for the ray tracer, and one that is lit takes no memory. */
 static void failures(void **state) {
   (void)state;
@@ -404,6 +421,7 @@ int main(void) {
     cmocka_unit_test(numbers_that_are_none),
     cmocka_unit_test(scale_of_the_world),
     cmocka_unit_test(walls),
+    cmocka_unit_test(between_the_bounds),
     cmocka_unit_test(failures),
   };
   make_balls();

@@ -63,6 +63,39 @@ static void kinds_are_told_apart(void **state) {
   map_header_free(&deep);
 }
 
+/* Any bit of a depth counts, and so does the tile's number; and what no tile can hold is none. */
+static void every_depth_counts(void **state) {
+  (void)state;
+  rng r = rng_seeded(2);
+  for (int k = 0; k < 300; ++k) {
+    const tile *t = random_depths(&r), *back;
+    deep_tile deep = {.words = NULL};
+    tile_record record = tile_record_of(t, 7);
+    assert_int_equal(tile_to_deep(t, DEPTH_CHANNELS, &deep), DSM_OK);
+    assert_int_equal(tile_from_deep(&deep, DEPTH_CHANNELS, &record, 7, &back), DSM_OK);
+    assert_true(same_tiles(t, back));
+    tile_destroy(back);
+    assert_int_equal(tile_from_deep(&deep, DEPTH_CHANNELS, &record, 8, &back), DSM_REFUSED);
+    deep.words[rng_below(&r, TILE_PIXELS)] ^= 1u << rng_below(&r, 32);
+    assert_seeded(&r, tile_from_deep(&deep, DEPTH_CHANNELS, &record, 7, &back) == DSM_REFUSED && !back);
+    free(deep.words);
+    tile_destroy(t);
+  }
+  const float odd[] = {NAN, -1, -INFINITY};
+  for (int k = 0; k < 4; ++k) {   /* the last one: no depth is 0 */
+    deep_tile deep = {.words = calloc(TILE_PIXELS, sizeof(uint32_t)), .room = TILE_PIXELS};
+    float one = 1;
+    const tile *back;
+    for (int i = 0; i < TILE_PIXELS; ++i) {
+      deep.count[i] = 1;
+      if (k == 3) memcpy(&deep.words[i], &one, sizeof one);
+    }
+    if (k < 3) memcpy(&deep.words[9], &odd[k], sizeof odd[k]);
+    assert_int_equal(tile_from_deep(&deep, DEPTH_CHANNELS, &record_of_lit, 0, &back), DSM_REFUSED);
+    free(deep.words);
+  }
+}
+
 /* Bakes the whole map and saves it. */
 static void save(stage *s, const char *path) {
   double share;
@@ -121,6 +154,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(depths_are_read_as_written),
     cmocka_unit_test(kinds_are_told_apart),
+    cmocka_unit_test(every_depth_counts),
     cmocka_unit_test(loaded_is_as_baked),
   };
   return cmocka_run_group_tests(tests, made_folder_open, made_folder_close);
