@@ -18,7 +18,8 @@ namespace pov
 string ShadowMaps::Statistics() const
 {
 	dsm_statistics sum = { 0 };
-	POV_ULONG lookUps = 0, rayTraced = 0;
+	POV_ULONG lookUps = 0, rayTraced = 0, compared = 0, different = 0;
+	bool comparing = false;
 	std::ostringstream text;
 
 	if(maps.empty())
@@ -51,6 +52,9 @@ string ShadowMaps::Statistics() const
 	{
 		lookUps += (*i)->lookUps;
 		rayTraced += (*i)->rayTraced;
+		comparing = (*i)->Hits().Comparing();
+		compared += (*i)->Hits().compared;
+		different += (*i)->Hits().different;
 	}
 
 	const double baked = max(1.0, double(sum.pixels_baked));
@@ -68,6 +72,10 @@ string ShadowMaps::Statistics() const
 	     << "Bake time:           " << sum.bake_seconds << " thread seconds (" << sum.trace_seconds << " tracing light rays)\n";
 	if(sum.tiles_failed > 0)
 		text << "Tiles failed:        " << sum.tiles_failed << "\n";
+	if(comparing)
+		text << "Rays in both orders: " << compared << ", different: " << different << "\n";
+	if(different > 0)
+		Tell(1, "light rays hit other surfaces object by object than they do one by one.");
 	return text.str();
 }
 
