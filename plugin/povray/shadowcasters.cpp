@@ -120,6 +120,23 @@ ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : hasVolumes(false)
 		hasUnmappedVolumes = hasUnmappedVolumes || HasVolume(*i);
 
 	tree.reset(new ShadowTree(boxes));
+	Sketch();
+}
+
+/// In the order of the tree: what is looked at together lies together.
+void ShadowCasters::Sketch()
+{
+	ShadowRod rod;
+
+	for(unsigned int place = 0; place < tree->Places(); place++)
+	{
+		shapes.push_back(ShadowShapeOf(objects[tree->Box(place)], rod));
+		if(shapes.back() != kRodShape)
+			continue;
+		if(rods.empty())
+			rods.resize(tree->Places());
+		rods[place] = rod;
+	}
 }
 
 /// A floor of 10,000 units with a few objects on it, or a sky around everything, would make the rest of the scene one

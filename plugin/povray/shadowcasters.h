@@ -39,15 +39,25 @@ class ShadowCasters
 		/// The boxes as a tree, and the object that a box of the tree belongs to.
 		const ShadowTree& Tree() const { return *tree; }
 		ObjectPtr Object(unsigned int box) const { return objects[box]; }
+
+		/// How the object at a place of the tree is outlined.
+		/// @return     false if it lies around the light, and can be anywhere
+		bool Draw(unsigned int place, const ShadowFrame& frame, ShadowOutline& outline) const
+		{
+			return (shapes[place] == kRodShape) ? outline.Draw(frame, rods[place]) : outline.Draw(frame, ShadowShape(shapes[place]), objects[tree->Box(place)]);
+		}
 	private:
 		vector<ObjectPtr> objects;    ///< parallel to boxes
 		vector<dsm_box> boxes;
+		vector<unsigned char> shapes; ///< ShadowShape, by place in the tree
+		vector<ShadowRod> rods;       ///< empty if there is none; else parallel to shapes
 		vector<ObjectPtr> unmapped;
 		boost::scoped_ptr<ShadowTree> tree;
 		bool hasVolumes, hasUnmappedVolumes;
 		ShadowVolumes volumes;
 
 		void SplitOffOutsized();
+		void Sketch();
 };
 
 }

@@ -42,6 +42,7 @@ class ShadowContext
 		POV_ULONG RayTraced(size_t map) const { return workers[map].rayTraced; }
 
 		ShadowMaps& Maps() { return maps; }
+		const ShadowHits& Hits() const { return events.Hits(); }
 
 		/// What the library calls while a context looks up; see dsm_host.
 		static dsm_result Trace(void *worker, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink);

@@ -22,13 +22,6 @@ namespace pov
 namespace
 {
 
-/// How far in front of an object's box its ray starts. Shapes ignore hits near a ray's origin (SMALL_TOLERANCE), so the
-/// start keeps well clear of the surface, yet close enough that a far light costs no precision.
-const double kRunUp = 0.01;
-
-/// A surface is asked for further hits from this far behind its last one (see MIN_ISECT_DEPTH).
-const double kStepOn = 1.0e-6;
-
 /// A fading span is halved at most this often.
 const int kMostHalvings = 16;
 
@@ -45,7 +38,7 @@ ShadowEvents::ShadowEvents(shared_ptr<SceneData> scene, TraceThreadData *thread,
 	casters(c),
 	volumes((quality & Q_VOLUME) != 0),
 	containersOf(NULL),
-	probe(Ray::OtherRay, true),
+	hits(c, thread),
 	shade(Ray::OtherRay, true),
 	media(thread)
 {
@@ -58,14 +51,18 @@ dsm_result ShadowEvents::TraceRays(const LightSource& light, const dsm_ray *rays
 	if(casters.HasVolumes())
 		FindContainers(light);
 
-	for(unsigned int i = 0; i < count; i++)
+	for(unsigned int done = 0, ready; done < count; done += ready)
 	{
-		if((i & 0x0f) == 0)
-			Task::CurrentTaskCooperate();
+		ready = hits.Find(rays + done, count - done);
+		for(unsigned int i = 0; i < ready; i++)
+		{
+			if((i & 0x0f) == 0)
+				Task::CurrentTaskCooperate();
 
-		const dsm_result result = ReportRay(light, rays[i], i, tolerance, sink);
-		if(result != DSM_OK)
-			return result;
+			const dsm_result result = ReportRay(light, rays[done + i], hits.Of(i), done + i, tolerance, sink);
+			if(result != DSM_OK)
+				return result;
+		}
 	}
 	return DSM_OK;
 }
@@ -100,77 +97,6 @@ void ShadowEvents::EnterContainers(const LightSource& light, const dsm_ray& ray)
 		inside.push_back((*i)->interior);
 }
 
-/// All surfaces of the mapped casters up to the first opaque one, nearest first.
-void ShadowEvents::FindHits(const dsm_ray& ray)
-{
-	ShadowTree::Walk walk(casters.Tree(), ray, stack);
-	double end = ray.far_depth;
-	double enter, leave;
-	unsigned int box;
-
-	hits.clear();
-	surfaces.clear();
-	while(walk.Next(end, box, enter, leave))
-		end = FindHitsOf(casters.Object(box), ray, enter, leave, end);
-
-	if(hits.size() > 1)
-		std::stable_sort(hits.begin(), hits.end());
-}
-
-/// One object's surfaces. Many shapes report only their first hit outside CSG, so an object that is not opaque is asked
-/// again from just behind its last hit until nothing is left.
-/// @return     depth of the nearest opaque surface so far
-double ShadowEvents::FindHitsOf(ObjectPtr object, const dsm_ray& ray, double enter, double leave, double end)
-{
-	double start = max(0.0, enter - kRunUp);
-	double last = start;
-
-	do
-	{
-		IStack found(stackPool);
-		bool more = false;
-
-		for(int i = 0; i < 3; i++)
-		{
-			probe.Origin[i] = ray.origin[i] + start * ray.direction[i];
-			probe.Direction[i] = ray.direction[i];
-		}
-		probe.ClearInteriors();
-
-		if((!object->Bound.empty() && !Ray_In_Bound(probe, object->Bound, threadData)) ||
-		   !object->All_Intersections(probe, found, threadData))
-			break;
-
-		for(; found->size() > 0; found->pop())
-		{
-			const Intersection& isect = found->top();
-			const double depth = start + isect.Depth;
-
-			if((isect.Depth < MIN_ISECT_DEPTH) || ((start == 0.0) && (isect.Depth < SMALL_TOLERANCE)) || !(depth < end))
-				continue;
-
-			Hit hit = { depth, kOpaque };
-			if(Test_Flag(isect.Object, OPAQUE_FLAG))
-				end = depth;
-			else
-			{
-				hit.surface = surfaces.size();
-				surfaces.push_back(isect);
-				more = more || (depth > last);
-				last = max(last, depth);
-			}
-			hits.push_back(hit);
-		}
-
-		if(!more || Test_Flag(object, OPAQUE_FLAG))
-			break;
-		start = last + kStepOn * max(1.0, fabs(last));
-	}
-	while(start < min(leave, end));
-
-	return end;
-}
-
 void ShadowEvents::Toggle(Interior *interior)
 {
 	vector<Interior *>::iterator i = std::find(inside.begin(), inside.end(), interior);
@@ -199,25 +125,24 @@ RGBColour ShadowEvents::ShadeSurface(const LightSource& light, const dsm_ray& ra
 }
 
 /// Reports hits and what lies between them. Light that is gone stays gone: nothing behind matters.
-dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray, unsigned int index, double tolerance, dsm_sink *sink)
+dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray, const vector<ShadowHits::Hit>& found, unsigned int index, double tolerance, dsm_sink *sink)
 {
 	const dsm_api_table& api = ShadowPlugin::Api();
 	double visible = 1.0;
 
-	FindHits(ray);
-	if(hits.empty())
+	if(found.empty())
 		return DSM_OK;
 	if(casters.HasVolumes())
 		EnterContainers(light, ray);
 
-	for(size_t i = 0; i < hits.size(); i++)
+	for(size_t i = 0; i < found.size(); i++)
 	{
-		const Hit& hit = hits[i];
+		const ShadowHits::Hit& hit = found[i];
 		double colour[3] = { 0.0, 0.0, 0.0 };
 
-		if(hit.surface != kOpaque)
+		if(hit.surface != ShadowHits::kOpaque)
 		{
-			const RGBColour c(ShadeSurface(light, ray, surfaces[hit.surface]));
+			const RGBColour c(ShadeSurface(light, ray, hits.Surface(hit)));
 			for(int k = 0; k < 3; k++)
 				colour[k] = c[k];
 		}
@@ -232,8 +157,8 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray,
 		if(!casters.HasVolumes())
 			continue;
 
-		const double next = (i + 1 < hits.size()) ? hits[i + 1].depth : ray.far_depth;
-		Interior *interior = surfaces[hit.surface].Object->interior;
+		const double next = (i + 1 < found.size()) ? found[i + 1].depth : ray.far_depth;
+		Interior *interior = hits.Surface(hit).Object->interior;
 
 		Toggle(interior);
 		if((interior->Fade_Power > 0.0) && (fabs(interior->Fade_Distance) > EPSILON) && (std::find(inside.begin(), inside.end(), interior) != inside.end()))

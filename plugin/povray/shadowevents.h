@@ -5,7 +5,7 @@
 #define POVRAY_BACKEND_SHADOWEVENTS_H
 
 #include "backend/render/trace.h"
-#include "backend/shadow/shadowcasters.h"
+#include "backend/shadow/shadowhits.h"
 #include "backend/shadow/shadowmedia.h"
 
 namespace pov
@@ -19,16 +19,9 @@ class ShadowEvents : public Trace
 		/// Reports a batch of rays of one light. Stops at the current task's pause points.
 		/// @return     what the library's sink said first that was not DSM_OK
 		dsm_result TraceRays(const LightSource& light, const dsm_ray *rays, unsigned int count, double tolerance, dsm_sink *sink);
-	private:
-		/// A surface on the ray.
-		struct Hit
-		{
-			double depth;
-			int surface; ///< in `surfaces`; kOpaque: nothing more is needed of it
-			bool operator<(const Hit& other) const { return depth < other.depth; }
-		};
-		enum { kOpaque = -1 };
 
+		const ShadowHits& Hits() const { return hits; }
+	private:
 		class SpanSink : public ShadowMedia::Sink
 		{
 			public:
@@ -50,20 +43,16 @@ class ShadowEvents : public Trace
 		vector<ObjectPtr> containers;    ///< hold the light itself, or the point of its plane where the ray begins
 
 		// scratch, kept between rays; a Ray is too big for the stack of every caller
-		vector<Hit> hits;
-		vector<Intersection> surfaces;
-		ShadowTree::Stack stack;
-		Ray probe, shade;
+		ShadowHits hits;
+		Ray shade;
 		vector<Interior *> inside;
 		ShadowMedia media;
 
 		void FindContainers(const LightSource& light);
 		void EnterContainers(const LightSource& light, const dsm_ray& ray);
-		void FindHits(const dsm_ray& ray);
-		double FindHitsOf(ObjectPtr object, const dsm_ray& ray, double enter, double leave, double end);
 		void Toggle(Interior *interior);
 		RGBColour ShadeSurface(const LightSource& light, const dsm_ray& ray, Intersection& isect);
-		dsm_result ReportRay(const LightSource& light, const dsm_ray& ray, unsigned int index, double tolerance, dsm_sink *sink);
+		dsm_result ReportRay(const LightSource& light, const dsm_ray& ray, const vector<ShadowHits::Hit>& found, unsigned int index, double tolerance, dsm_sink *sink);
 		dsm_result ReportFade(const Interior& interior, double front, double back, double tolerance, unsigned int index, dsm_sink *sink);
 		double ReportMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, SpanSink& sink);
 };

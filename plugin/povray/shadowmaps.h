@@ -70,6 +70,7 @@ class ShadowMaps
 		/// The section for the render statistics; empty if no light has a map.
 		string Statistics() const;
 		string Statistics(bool deep) const;
+		string Comparison() const;
 
 		static const size_t kNone = static_cast<size_t>(-1);
 	private:

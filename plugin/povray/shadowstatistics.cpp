@@ -56,7 +56,27 @@ struct Sum
 
 string ShadowMaps::Statistics() const
 {
-	return Statistics(true) + Statistics(false);
+	return Statistics(true) + Statistics(false) + Comparison();
+}
+
+/// Where both orders of light rays are tried: whether they hit the same.
+string ShadowMaps::Comparison() const
+{
+	POV_ULONG compared = 0, different = 0;
+	bool comparing = false;
+	std::ostringstream text;
+
+	for(vector<shared_ptr<ShadowContext> >::const_iterator i(contexts.begin()); i != contexts.end(); i++)
+	{
+		comparing = (*i)->Hits().Comparing();
+		compared += (*i)->Hits().compared;
+		different += (*i)->Hits().different;
+	}
+	if(comparing)
+		text << "Rays in both orders: " << compared << ", different: " << different << "\n";
+	if(different > 0)
+		Tell(1, "light rays hit other surfaces object by object than they do one by one.");
+	return text.str();
 }
 
 /// The section on maps of one kind; empty if there is none.

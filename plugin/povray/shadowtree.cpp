@@ -175,36 +175,14 @@ unsigned int ShadowTree::Split(const dsm_box& centres, unsigned int first, unsig
 	return std::partition(begin, begin + count, BelowBin(boxes, centres, bestAxis, bestBin)) - begin;
 }
 
-ShadowTree::Walk::Walk(const ShadowTree& t, const dsm_ray& r, Stack& s) : tree(t), ray(r), stack(s), leafItem(0), leafEnd(0)
+ShadowTree::Walk::Walk(const ShadowTree& t, const dsm_ray& r, Stack& s) : tree(t), line(r), stack(s), leafItem(0), leafEnd(0)
 {
 	double leave;
 	Entry root = { 0, 0.0 };
 
-	for(int i = 0; i < 3; i++)
-	{
-		inverse[i] = 1.0 / ray.direction[i];
-		nearSide[i] = (inverse[i] < 0.0) ? 1 : 0;
-	}
 	stack.clear();
-	if(!tree.nodes.empty() && Cross(tree.nodes[0].slabs, root.enter, leave))
+	if(!tree.nodes.empty() && line.Cross(tree.nodes[0].slabs, root.enter, leave))
 		stack.push_back(root);
-}
-
-/// Slabs in double, however far away the light is. A direction along a face gives infinities of the right sign; a
-/// NaN (an origin on the face as well) leaves that slab out of account.
-inline bool ShadowTree::Walk::Cross(const Slabs& slabs, double& enter, double& leave) const
-{
-	double from = ray.near_depth, to = ray.far_depth;
-	for(int i = 0; i < 3; i++)
-	{
-		const double low = (slabs.side[nearSide[i]][i] - ray.origin[i]) * inverse[i];
-		const double high = (slabs.side[1 - nearSide[i]][i] - ray.origin[i]) * inverse[i];
-		from = (low > from) ? low : from;
-		to = (high < to) ? high : to;
-	}
-	enter = from;
-	leave = to;
-	return from <= to;
 }
 
 bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double& leave)
@@ -214,7 +192,7 @@ bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double
 		while(leafItem < leafEnd)
 		{
 			const unsigned int item = leafItem++;
-			if(Cross(tree.leaves[item], enter, leave) && (enter < end))
+			if(line.Cross(tree.leaves[item], enter, leave) && (enter <= end))
 			{
 				box = tree.order[item];
 				return true;
@@ -226,7 +204,7 @@ bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double
 
 		const Entry entry = stack.back();
 		stack.pop_back();
-		if(entry.enter >= end)
+		if(entry.enter > end)
 			continue;
 
 		const Node& node = tree.nodes[entry.node];
@@ -240,8 +218,8 @@ bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double
 		// the nearer child is looked at first, so it goes on top
 		Entry left = { node.first, 0.0 }, right = { node.first + 1, 0.0 };
 		double unused;
-		const bool crossLeft = Cross(tree.nodes[left.node].slabs, left.enter, unused) && (left.enter < end);
-		const bool crossRight = Cross(tree.nodes[right.node].slabs, right.enter, unused) && (right.enter < end);
+		const bool crossLeft = line.Cross(tree.nodes[left.node].slabs, left.enter, unused) && (left.enter <= end);
+		const bool crossRight = line.Cross(tree.nodes[right.node].slabs, right.enter, unused) && (right.enter <= end);
 		if(crossLeft && crossRight)
 		{
 			stack.push_back((left.enter < right.enter) ? right : left);
@@ -250,6 +228,53 @@ bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double
 		else if(crossLeft || crossRight)
 			stack.push_back(crossLeft ? left : right);
 	}
+}
+
+ShadowTree::Sweep::Sweep(const ShadowTree& t, const ShadowBeam& b, Heap& h, size_t most) : tree(t), beam(b), heap(h), budget(most)
+{
+	heap.clear();
+	if(!tree.nodes.empty())
+		Push(tree.nodes[0].slabs, 0, false);
+}
+
+inline void ShadowTree::Sweep::Push(const Slabs& slabs, unsigned int place, bool isBox)
+{
+	ShadowRect rect;
+
+	if(!beam.Meets(slabs.side[0], slabs.side[1], rect))
+		return;
+	const Ahead ahead = { rect.nearness, place, isBox };
+	heap.push_back(ahead);
+	std::push_heap(heap.begin(), heap.end());
+}
+
+bool ShadowTree::Sweep::Next(unsigned int& place)
+{
+	while(!heap.empty() && (heap.front().nearness >= beam.End()) && (budget > 0))
+	{
+		const Ahead ahead = heap.front();
+
+		std::pop_heap(heap.begin(), heap.end());
+		heap.pop_back();
+		budget--;
+		if(ahead.isBox)
+		{
+			place = ahead.place;
+			return true;
+		}
+
+		const Node& node = tree.nodes[ahead.place];
+		ShadowRect rect;
+		if(!beam.Meets(node.slabs.side[0], node.slabs.side[1], rect) || beam.Hides(rect))
+			continue;
+		if(node.count > 0)
+			for(unsigned int i = node.first; i < node.first + node.count; i++)
+				Push(tree.leaves[i], i, true);
+		else
+			for(unsigned int i = node.first; i < node.first + 2; i++)
+				Push(tree.nodes[i].slabs, i, false);
+	}
+	return false;
 }
 
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A tree of boxes, and the boxes that a light ray crosses, nearest first.
+// A tree of boxes, and the boxes that a light ray or a beam of them crosses, nearest first.
 
 #ifndef POVRAY_BACKEND_SHADOWTREE_H
 #define POVRAY_BACKEND_SHADOWTREE_H
 
 #include <vector>
 
-#include "backend/shadow/shadowplugin.h"
+#include "backend/shadow/shadowbeam.h"
 
 namespace pov
 {
@@ -23,6 +23,20 @@ class ShadowTree
 	public:
 		explicit ShadowTree(const std::vector<dsm_box>& boxes);
 
+		/// A ray, ready to be compared with many boxes.
+		class Line
+		{
+			public:
+				explicit Line(const dsm_ray& ray);
+
+				/// Where the ray enters and leaves a box, between its near and far depth.
+				bool Cross(const Slabs& slabs, double& enter, double& leave) const;
+			private:
+				const dsm_ray& ray;
+				double inverse[3];
+				int nearSide[3]; ///< which side of a slab the ray meets first
+		};
+
 		/// Scratch of a walk, kept by the caller from ray to ray.
 		struct Entry
 		{
@@ -36,19 +50,54 @@ class ShadowTree
 			public:
 				Walk(const ShadowTree& tree, const dsm_ray& ray, Stack& stack);
 
-				/// The next box that begins in front of `end`, and where the ray enters and leaves it.
+				/// The next box that begins no later than `end`, and where the ray enters and leaves it.
 				/// @return     false when there is none left
 				bool Next(double end, unsigned int& box, double& enter, double& leave);
 			private:
-				bool Cross(const Slabs& slabs, double& enter, double& leave) const;
-
 				const ShadowTree& tree;
-				const dsm_ray& ray;
+				const Line line;
 				Stack& stack;
-				double inverse[3];
-				int nearSide[3]; ///< which side of a slab the ray meets first
 				unsigned int leafItem, leafEnd; ///< boxes of the current leaf that are still to be seen
 		};
+
+		/// Scratch of a sweep, kept by the caller from beam to beam. What lies nearest to the light is on top.
+		struct Ahead
+		{
+			double nearness;
+			unsigned int place; ///< in `nodes`, or in the order of the leaves
+			bool isBox;
+			bool operator<(const Ahead& other) const { return nearness < other.nearness; }
+		};
+		typedef std::vector<Ahead> Heap;
+
+		/// The boxes in a beam, nearest first. The beam's rays may be shortened on the way.
+		class Sweep
+		{
+			public:
+				/// @param[in]      budget      the sweep gives up after so many nodes and boxes
+				Sweep(const ShadowTree& tree, const ShadowBeam& beam, Heap& heap, size_t budget);
+
+				/// The next box that may be seen.
+				/// @param[out]     place       of the box in the tree
+				/// @return                     false when there is none left, or the budget is spent
+				bool Next(unsigned int& place);
+
+				bool GaveUp() const { return budget == 0; }
+			private:
+				const ShadowTree& tree;
+				const ShadowBeam& beam;
+				Heap& heap;
+				size_t budget;
+
+				void Push(const Slabs& slabs, unsigned int place, bool isBox);
+		};
+
+		/// The box at a place of the tree. Places that are neighbours lie close together.
+		unsigned int Box(unsigned int place) const { return order[place]; }
+		unsigned int Places() const { return order.size(); }
+
+		/// Where a ray enters and leaves the box at that place.
+		bool Cross(const dsm_ray& ray, unsigned int place, double& enter, double& leave) const { return Line(ray).Cross(leaves[place], enter, leave); }
 	private:
 		/// A box in floats, rounded outwards: a walk is bound by the memory that it touches. side[0] is low, side[1] high.
 		struct Slabs
@@ -73,6 +122,32 @@ class ShadowTree
 		void Build(unsigned int node, unsigned int first, unsigned int count);
 		unsigned int Split(const dsm_box& centres, unsigned int first, unsigned int count);
 };
+
+inline ShadowTree::Line::Line(const dsm_ray& r) : ray(r)
+{
+	for(int i = 0; i < 3; i++)
+	{
+		inverse[i] = 1.0 / ray.direction[i];
+		nearSide[i] = (inverse[i] < 0.0) ? 1 : 0;
+	}
+}
+
+/// Slabs in double, however far away the light is. A direction along a face gives infinities of the right sign; a
+/// NaN (an origin on the face as well) leaves that slab out of account.
+inline bool ShadowTree::Line::Cross(const Slabs& slabs, double& enter, double& leave) const
+{
+	double from = ray.near_depth, to = ray.far_depth;
+	for(int i = 0; i < 3; i++)
+	{
+		const double low = (slabs.side[nearSide[i]][i] - ray.origin[i]) * inverse[i];
+		const double high = (slabs.side[1 - nearSide[i]][i] - ray.origin[i]) * inverse[i];
+		from = (low > from) ? low : from;
+		to = (high < to) ? high : to;
+	}
+	enter = from;
+	leave = to;
+	return from <= to;
+}
 
 }
 
