@@ -52,11 +52,20 @@ static dsm_result cannot_read(const char *path, int error, map_reason *why)
   return map_refused(why, "The shadow map \"%s\" cannot be read: %s.", path, reason);
 }
 
+/* Whether any of a map's attributes stands there; their names sort early. */
+static int has_our_words(const unsigned char *bytes, size_t count)
+{
+  for (size_t i = 0; i + 5 <= count; i++)
+    if (memcmp(bytes + i, "\0dsm:", 5) == 0)
+      return 1;
+  return 0;
+}
+
 /* OpenImageIO has the same words for whatever it cannot open. */
 static dsm_result check_kind(const char *path, uint64_t *size, map_reason *why)
 {
   static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
-  unsigned char first[4];
+  unsigned char first[4096];
   struct stat there;
   *size = 0;
   if (stat(path, &there))
@@ -69,8 +78,11 @@ static dsm_result check_kind(const char *path, uint64_t *size, map_reason *why)
   *size = (uint64_t)there.st_size;
   size_t n = fread(first, 1, sizeof first, file);
   fclose(file);
-  if (n != sizeof first || memcmp(first, magic, sizeof magic) != 0)
+  if (n < sizeof magic || memcmp(first, magic, sizeof magic) != 0)
     return map_refused(why, "\"%s\" is not an OpenEXR file, so it is no deep shadow map.", path);
+  if (!has_our_words(first, n))
+    return map_refused(why, n < sizeof first ? "\"%s\" is not a deep shadow map, or damaged or cut off."
+                                             : "\"%s\" is an OpenEXR image, but not a deep shadow map.", path);
   return DSM_OK;
 }
 
