@@ -32,6 +32,10 @@ static const double CLOSE = 0.25;
  * a smaller map would do. */
 enum { FOOTPRINT_LEVEL = 5 };
 
+/* A stored depth is off by up to half a step of a float, 2^-24 of its distance from the tile's near depth, and in coarser levels by
+ * some more. This much keeps a receiver in front of its own step, and far casters in the tile do not make it more. */
+static const double DEPTH_ROUNDING = 0x1p-21;
+
 /* Whether much light is lost between depth z and where `seen` of it is left. */
 static int is_close(const visibility *function, double z, uint32_t channel, double seen)
 {
@@ -52,7 +56,8 @@ static int is_close(const visibility *function, double z, uint32_t channel, doub
 static dsm_result add_surface(view *v, const tile *t, const visibility *function, double du, double dv,
                               uint32_t *hint, double weight)
 {
-  double z = v->at->depth - t->near_depth - t->depth_rounding - v->own_rounding;
+  double z = v->at->depth - t->near_depth;
+  z -= DEPTH_ROUNDING * fabs(z) + v->own_rounding;
   double tangent = receiver_bias(&v->planes[0], du, dv);
   double other = v->plane_count > 1 ? receiver_bias(&v->planes[1], du, dv) : tangent;
   visibility_place front = {0, 0, 0}, middle = {0, 0, 0};

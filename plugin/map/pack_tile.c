@@ -3,10 +3,6 @@
 
 #include <math.h>
 
-/* Half a step of a float is 2^-25 to 2^-24 of its size; four times that keeps a receiver in front of its own
- * step. */
-static const double DEPTH_ROUNDING = 0x1p-22;
-
 static uint16_t rounded(double value)
 {
   return (uint16_t)(fmin(1, fmax(0, value)) * VALUE_STEPS + 0.5);
@@ -57,18 +53,16 @@ static float tolerance_of(const baked_pixel pixels[TILE_PIXELS])
 
 dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const tile **out)
 {
-  double near_depth = INFINITY, far_depth = -INFINITY;
+  double near_depth = INFINITY;
   int marked = 0;
   for (int i = 0; i < TILE_PIXELS; i++) {
     const baked_pixel *p = &pixels[i];
     marked |= p->marked;
-    if (p->count) {
+    if (p->count)
       near_depth = fmin(near_depth, stored->data[p->first].z);
-      far_depth = fmax(far_depth, stored->data[p->first + p->count - 1].z);
-    }
   }
   *out = NULL;
-  if (!(near_depth <= far_depth) && !marked) {
+  if (near_depth == INFINITY && !marked) {
     *out = &tile_lit;
     return DSM_OK;
   }
@@ -87,9 +81,8 @@ dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, co
   tile *t = tile_create(&plan);
   if (!t)
     return DSM_NO_MEMORY;
-  if (near_depth <= far_depth) {
+  if (near_depth < INFINITY) {
     t->near_depth = near_depth;
-    t->depth_rounding = DEPTH_ROUNDING * (far_depth - near_depth);
     t->tolerance = tolerance_of(pixels);
   }
   for (uint32_t i = 0; i < TILE_PIXELS; i++) {

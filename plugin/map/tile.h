@@ -37,7 +37,6 @@ enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4,   /* what of the optio
 
 typedef struct {
   double near_depth;      /* scene units from the light */
-  double depth_rounding;  /* more than the rounding of a stored depth, scene units */
   float tolerance;        /* error of visibility that compression may have added, rms over the pixels that have any */
   uint32_t size;          /* bytes of the whole block */
   uint16_t words;         /* offset of the vertices in bytes */

@@ -6,11 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TABLE_ACROSS = 32, RECORD_WORDS = 6 };
+enum { TABLE_ACROSS = 32, RECORD_WORDS = 4 };
 
-static const char *const record_channels[RECORD_WORDS] = {"nearHigh", "nearLow", "roundingHigh", "roundingLow",
-                                                          "tolerance", "checksum"};
-enum { TOLERANCE = 4, CHECKSUM = 5 };
+static const char *const record_channels[RECORD_WORDS] = {"nearHigh", "nearLow", "tolerance", "checksum"};
+enum { TOLERANCE = 2, CHECKSUM = 3 };
 
 static deep_part part_with(const char *const *channels, uint32_t channel_count, uint64_t across, uint64_t up)
 {
@@ -88,7 +87,6 @@ static double get_double(const uint32_t *high_low)
 static void put_record(const tile_record *r, uint32_t *word)
 {
   put_double(word, r->near_depth);
-  put_double(word + 2, r->depth_rounding);
   memcpy(word + TOLERANCE, &r->tolerance, sizeof *word);
   word[CHECKSUM] = r->checksum;
 }
@@ -97,23 +95,20 @@ static void put_record(const tile_record *r, uint32_t *word)
 static int get_record(const uint32_t *word, int flat, tile_record *r)
 {
   r->near_depth = get_double(word);
-  r->depth_rounding = get_double(word + 2);
   memcpy(&r->tolerance, word + TOLERANCE, sizeof *word);
   r->checksum = word[CHECKSUM];
-  if (flat && r->near_depth == 0 && r->depth_rounding == 0 && r->tolerance == -1 && r->checksum == 0)
+  if (flat && r->near_depth == 0 && r->tolerance == -1 && r->checksum == 0)
     return 1;
-  return r->near_depth >= 0 && r->near_depth < INFINITY && r->depth_rounding >= 0 && r->depth_rounding < INFINITY
-      && r->tolerance >= 0 && r->tolerance <= 1;
+  return r->near_depth >= 0 && r->near_depth < INFINITY && r->tolerance >= 0 && r->tolerance <= 1;
 }
 
-/* The seal has the shape of a record: the number of tiles, then the checksum. */
+/* The seal has the shape of a record: the checksum of all in place of a depth, and the number of tiles. */
 static void put_seal(uint64_t tile_count, uint64_t seal, uint32_t *word)
 {
-  word[0] = (uint32_t)(tile_count >> 32);
-  word[1] = (uint32_t)tile_count;
-  word[2] = (uint32_t)(seal >> 32);
-  word[3] = (uint32_t)seal;
-  word[TOLERANCE] = word[CHECKSUM] = 0;
+  word[0] = (uint32_t)(seal >> 32);
+  word[1] = (uint32_t)seal;
+  word[TOLERANCE] = 0;
+  word[CHECKSUM] = (uint32_t)tile_count;
 }
 
 int tile_table_write(const deep_exr *exr, deep_writer *writer, const map_parts *m, const tile_record *records,
@@ -157,7 +152,7 @@ static int take_block(const deep_tile *deep, uint64_t first, const map_parts *m,
     }
     else if (number == m->tile_count) {
       uint32_t expected[RECORD_WORDS];
-      *seal = (uint64_t)word[2] << 32 | word[3];
+      *seal = (uint64_t)word[0] << 32 | word[1];
       put_seal(m->tile_count, *seal, expected);
       if (memcmp(word, expected, sizeof expected) != 0)
         return 0;

@@ -7,7 +7,7 @@
 
 #include "map/depth_tile.h"
 
-const tile_record record_of_lit = {0, 0, -1, 0};
+const tile_record record_of_lit = {0, -1, 0};
 
 const char *const grey_channels[GREY_CHANNELS] = {"Z", "V"};
 const char *const coloured_channels[COLOURED_CHANNELS] = {"Z", "VR", "VG", "VB"};
@@ -29,7 +29,7 @@ uint64_t checksum_add(uint64_t sum, const void *bytes, size_t size)
 
 tile_record tile_record_of(const tile *t, uint64_t number)
 {
-  tile_record record = {t->near_depth, t->depth_rounding, t->tolerance, 0};
+  tile_record record = {t->near_depth, t->tolerance, 0};
   uint64_t sum = checksum_add(0, &number, sizeof number);
   sum = checksum_add(sum, &record, offsetof(tile_record, checksum));
   for (uint32_t i = 0; i < TILE_PIXELS && !tile_has_depths(t); i++) {
@@ -39,10 +39,9 @@ tile_record tile_record_of(const tile *t, uint64_t number)
     sum = checksum_add(sum, v.depth, v.count * sizeof *v.depth);
     sum = checksum_add(sum, v.value, (size_t)v.count * v.channels * sizeof *v.value);
   }
-  if (tile_has_depths(t)) {
+  if (tile_has_depths(t))
     sum = checksum_add(sum, depths_of(t)->depth, sizeof depths_of(t)->depth);
-    sum = checksum_add(sum, &depths_of(t)->most, sizeof depths_of(t)->most);   /* and mixes the last depth's sign in */
-  }
+  sum = checksum_add(sum, &number, sizeof number);   /* mixes in the top bit of what came last */
   record.checksum = (uint32_t)(sum ^ sum >> 32);
   return record;
 }
@@ -233,7 +232,6 @@ dsm_result tile_from_deep(const deep_tile *deep, uint32_t channels, const tile_r
   if (!t)
     return DSM_NO_MEMORY;
   t->near_depth = record->near_depth;
-  t->depth_rounding = record->depth_rounding;
   t->tolerance = record->tolerance;
   fill_tile(t, deep, channels);
   if (tile_record_of(t, number).checksum != record->checksum) {

@@ -11,9 +11,9 @@
 
 /* Part "tiles" has one for each tile that is stored. */
 typedef struct {
-  double near_depth, depth_rounding;   /* as in the tile */
-  float tolerance;                     /* as in the tile; < 0: the tile is lit */
-  uint32_t checksum;                   /* of all of the tile, and of its number */
+  double near_depth;    /* as in the tile */
+  float tolerance;      /* as in the tile; < 0: the tile is lit */
+  uint32_t checksum;    /* of all of the tile, and of its number */
 } tile_record;
 
 extern const tile_record record_of_lit;

@@ -101,7 +101,7 @@ static dsm_map *bake_with(int threads, int stops_often, uint64_t seed) {
 
 /* All but the mark that the cache keeps in a tile. */
 static int same_tile_bytes(const tile *s, const tile *t) {
-  return s->near_depth == t->near_depth && s->depth_rounding == t->depth_rounding && s->tolerance == t->tolerance
+  return s->near_depth == t->near_depth && s->tolerance == t->tolerance
       && s->size == t->size && s->kind == t->kind && memcmp(s + 1, t + 1, s->size - sizeof *s) == 0;
 }
 

@@ -185,7 +185,6 @@ static inline const tile *random_tile(rng *r, int coloured, uint32_t most_vertic
   tile *t = tile_create(&plan);
   assert_non_null(t);
   t->near_depth = rng_scale(r, 1e-9, 1e9);
-  t->depth_rounding = rng_scale(r, 1e-12, 1);
   t->tolerance = (float)rng_unit(r);
   fill_random(r, t);
   return t;
@@ -215,7 +214,7 @@ static inline dsm_result give_made(void *data, const tile_key *key, const tile *
 
 static inline int same_tiles(const tile *a, const tile *b) {
   if (a->kind != TILE_STORED || b->kind != TILE_STORED) return a == b;
-  return a->near_depth == b->near_depth && a->depth_rounding == b->depth_rounding && a->tolerance == b->tolerance
+  return a->near_depth == b->near_depth && a->tolerance == b->tolerance
       && a->size == b->size && a->words == b->words && a->layout == b->layout
       && memcmp(a + 1, b + 1, a->size - sizeof(tile)) == 0;
 }

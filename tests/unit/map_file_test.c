@@ -16,7 +16,6 @@
 
 static char text[MAP_REASON_SIZE];
 static map_reason why = {text, sizeof text};
-
 static void write_map(const char *path, made_map *m) {
   if (map_file_write(path, &m->header, give_made, m, NULL, &why) != DSM_OK) fail_msg("%s", text);
 }
@@ -162,6 +161,20 @@ static void all_values_survive(void **state) {
 }
 
 /* What no map has, with the right checksum all the same: made by somebody, or by an older bug. */
+/* Each bit of a tile's checksum counts, the last one too. */
+static void every_bit_counts(void **state) {
+  (void)state;
+  tile_plan plan = {.count = {[TILE_PIXELS - 1] = 4}};
+  tile *t = tile_create(&plan);
+  uint32_t sum = tile_record_of(t, 5).checksum;
+  for (int i = 0; i < 4 * 16; ++i) {
+    tile_values(t, TILE_PIXELS - 1)[i / 16] ^= (uint16_t)(1u << i % 16);
+    assert_true(tile_record_of(t, 5).checksum != sum);
+    tile_values(t, TILE_PIXELS - 1)[i / 16] ^= (uint16_t)(1u << i % 16);
+  }
+  tile_destroy(t);
+}
+
 static void impossible_tiles_are_refused(void **state) {
   (void)state;
   tile_plan plan;
@@ -566,6 +579,7 @@ int main(void) {
     cmocka_unit_test(what_is_written_is_read),
     cmocka_unit_test(an_empty_map),
     cmocka_unit_test(all_values_survive),
+    cmocka_unit_test(every_bit_counts),
     cmocka_unit_test(impossible_tiles_are_refused),
     cmocka_unit_test(same_map_same_bytes),
     cmocka_unit_test(a_cut_file_is_refused),

@@ -43,7 +43,6 @@ static tile *any_tile(rng *r) {
   tile *t = tile_create(&plan);
   assert_non_null(t);
   t->near_depth = rng_unit(r);
-  t->depth_rounding = rng_unit(r);
   t->tolerance = (float)rng_unit(r);
   for (size_t i = t->words; i < t->size; ++i) ((unsigned char *)t)[i] = (unsigned char)rng_bits(r);
   return t;

@@ -60,7 +60,7 @@ static int holds(const tile *t, const planned *p) {
 static void check_round_trip(const planned *p) {
   tile *t = tile_create(&p->plan);
   assert_non_null(t);
-  assert_true(t->kind == TILE_STORED && t->near_depth == 0 && t->depth_rounding == 0 && t->tolerance == 0);
+  assert_true(t->kind == TILE_STORED && t->near_depth == 0 && t->tolerance == 0);
   assert_int_equal(t->size, size_of(p));
   assert_int_equal(t->layout, (p->words > 65535 ? TILE_WIDE : 0) | (p->coloured ? TILE_COLOURED : 0)
                                   | (p->marked ? TILE_MARKED : 0));
