@@ -7,6 +7,7 @@
 #include "map/whole_map.h"
 #include "store/map_file.h"
 #include "tool/command.h"
+#include "tool/open_map.h"
 
 /* Nothing is traced, and makers say themselves what is wrong. */
 static dsm_result create_map(const map_header *header, dsm_map **out)
@@ -78,7 +79,7 @@ int built_map_write(const char *path, map_header *header, tile_maker *maker)
   int status = STATUS_FINE;
   dsm_result result = map_file_writable(path, &why);
   if (result != DSM_OK)
-    status = result == DSM_NO_MEMORY ? trouble_memory() : trouble("%s", text);
+    status = trouble_because(result, &why);
   if (status == STATUS_FINE && create_map(header, &map) != DSM_OK)
     status = trouble_memory();
   if (status != STATUS_FINE) {

@@ -65,7 +65,7 @@ static int write_rows(exporter *e, image_writer *writer, int channels, map_reaso
       return trouble_memory();
     dsm_result result = image_writer_row(writer, e->samples.data, e->first, why);
     if (result != DSM_OK)
-      return result == DSM_NO_MEMORY ? trouble_memory() : trouble("%s", why->text);
+      return trouble_because(result, why);
   }
   return STATUS_FINE;
 }
@@ -80,7 +80,7 @@ static int open_writer(const exporter *e, const char *path, const image_size *si
   if (result == DSM_OK)
     result = image_writer_open(path, size, list.items, list.count, writer, why);
   attribute_list_free(&list);
-  return result == DSM_OK ? STATUS_FINE : result == DSM_NO_MEMORY ? trouble_memory() : trouble("%s", why->text);
+  return result == DSM_OK ? STATUS_FINE : trouble_because(result, why);
 }
 
 static int write_image(exporter *e, const char *path)

@@ -147,7 +147,7 @@ static int find_frame(const arguments *given, const image_reader *image, const i
   int found;
   dsm_result result = image_frame_read(image, size, given->path, &found, header, face_index, &why);
   if (result != DSM_OK)
-    return result == DSM_NO_MEMORY ? trouble_memory() : trouble("%s", text);
+    return trouble_because(result, &why);
   return found ? STATUS_FINE : trouble("%s does not say where its pixels are in the scene; give a map that has the same "
                                        "frame with --like.", given->path);
 }
@@ -184,7 +184,7 @@ static int run(const arguments *given)
   image_size size;
   dsm_result result = image_reader_open(given->path, &size, &image, &why);
   if (result != DSM_OK)
-    return result == DSM_NO_MEMORY ? trouble_memory() : trouble("%s", text);
+    return trouble_because(result, &why);
   int status = import_image(given, image, &size);
   image_reader_close(image);
   return status;

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static int refuse(dsm_result result, const map_reason *why)
+int trouble_because(dsm_result result, const map_reason *why)
 {
   return result == DSM_NO_MEMORY ? trouble_memory() : trouble("%s", why->text);
 }
@@ -15,7 +15,7 @@ int open_map_begin(open_map *map, const char *path)
   memset(map, 0, sizeof *map);
   map->path = path;
   dsm_result result = map_file_open(path, &map->header, &map->file, &why);
-  return result == DSM_OK ? STATUS_FINE : refuse(result, &why);
+  return result == DSM_OK ? STATUS_FINE : trouble_because(result, &why);
 }
 
 int open_map_begin_deep(open_map *map, const char *path)
@@ -41,7 +41,7 @@ int open_map_tile(const open_map *map, const tile_key *key, const tile **out)
   char text[MAP_REASON_SIZE] = "";
   map_reason why = {text, sizeof text};
   dsm_result result = map_file_tile(map->file, key, out, &why);
-  return result == DSM_OK ? STATUS_FINE : refuse(result, &why);
+  return result == DSM_OK ? STATUS_FINE : trouble_because(result, &why);
 }
 
 static uint32_t tiles_for(uint32_t pixels)

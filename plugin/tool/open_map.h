@@ -13,6 +13,9 @@ typedef struct {
   map_file *file;
 } open_map;
 
+/* What has failed, in the sentence that came with it. Returns STATUS_TROUBLE. */
+int trouble_because(dsm_result result, const map_reason *why);
+
 /* STATUS_FINE, or STATUS_TROUBLE and a sentence has been printed; likewise below. */
 int open_map_begin(open_map *map, const char *path);
 /* The same for commands that know visibility alone: a map of depths is refused. */

@@ -135,7 +135,7 @@ static int draw(const open_map *map, const arguments *given, const map_grid *gri
     }
     result = new_file_keep(&file, &why);
   }
-  return result == DSM_OK ? STATUS_FINE : result == DSM_NO_MEMORY ? trouble_memory() : trouble("%s", text);
+  return result == DSM_OK ? STATUS_FINE : trouble_because(result, &why);
 }
 
 static int run(const open_map *map, const arguments *given)
