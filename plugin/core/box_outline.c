@@ -149,9 +149,47 @@ static void add_orthographic(outline *sum, const double origin[3], const frame *
   include_depths(sum, fmax(0, nearest), farthest);
 }
 
+/* Whether a box lies well inside what has been seen: of many boxes nearly all do, and need not be projected. Rounding
+ * has room, so that the sum does not depend on it. */
+static int within(const outline *sum, const double origin[3], const frame *axes, int perspective, const dsm_box *box)
+{
+  double at[3] = {0, 0, 0}, reach[3] = {0, 0, 0}, nearest = 0, farthest = 0, away = 0;
+  for (int i = 0; i < 3; i++) {
+    double middle = 0.5 * (box->low[i] + box->high[i]) - origin[i], half = 0.5 * (box->high[i] - box->low[i]);
+    double gap = fabs(middle) - half, end = fabs(middle) + half;
+    at[0] += middle * axes->right[i];
+    at[1] += middle * axes->up[i];
+    at[2] += middle * axes->forward[i];
+    reach[0] += half * fabs(axes->right[i]);
+    reach[1] += half * fabs(axes->up[i]);
+    reach[2] += half * fabs(axes->forward[i]);
+    nearest += gap > 0 ? gap * gap : 0;
+    farthest += end * end;
+    away += end;
+  }
+  const double room = 1e-12;
+  double front = at[2] - reach[2], back = at[2] + reach[2], scale[2] = {1, 1}, slack = room * away;
+  if (perspective) {
+    if (!(front > 0.01 * away))
+      return 0;
+    scale[0] = 1 / front;
+    scale[1] = 1 / back;
+    slack = 100 * room;
+  }
+  else if (!(front - slack >= sum->near_depth && back + slack <= sum->far_depth))
+    return 0;
+  double u0 = at[0] - reach[0], u1 = at[0] + reach[0], v0 = at[1] - reach[1], v1 = at[1] + reach[1];
+  return u0 * scale[u0 > 0] - slack >= sum->area.u0 && u1 * scale[u1 < 0] + slack <= sum->area.u1
+         && v0 * scale[v0 > 0] - slack >= sum->area.v0 && v1 * scale[v1 < 0] + slack <= sum->area.v1
+         && (!perspective || (nearest * (1 - room) >= sum->near_depth * sum->near_depth
+                              && farthest * (1 + room) <= sum->far_depth * sum->far_depth));
+}
+
 void outline_add(outline *sum, const double origin[3], const frame *axes, int perspective,
                  const rectangle *window, const dsm_box *box)
 {
+  if (within(sum, origin, axes, perspective, box))
+    return;
   if (perspective)
     add_perspective(sum, origin, axes, window, box);
   else

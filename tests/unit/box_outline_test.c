@@ -176,11 +176,47 @@ static void orthographic_spans_the_corners(void **state) {
   }
 }
 
+static int same(const outline *a, const outline *b) {
+  return same_area(&a->area, &b->area, 0) && a->near_depth == b->near_depth && a->far_depth == b->far_depth;
+}
+
+/* Of many boxes most lie inside what has been seen and are passed over: the sum is the same to the last bit, from near and
+ * from far. */
+static void many_are_the_sum_of_each(void **state) {
+  (void)state;
+  for (uint64_t seed = 0; seed < 2000; ++seed) {
+    rng r = rng_seeded(seed);
+    view v = random_view(&r);
+    int perspective = (int)rng_below(&r, 2);
+    double away = pow(10, rng_between(&r, 0, 6));
+    for (int i = 0; i < 3; ++i) v.origin[i] = rng_between(&r, -1, 1) - away * v.axes.forward[i];
+    if (rng_below(&r, 2)) v.window = (rectangle){-1e3, -1e3, 1e3, 1e3};
+    outline sum = OUTLINE_EMPTY, truth = OUTLINE_EMPTY;
+    for (int k = 0; k < 60; ++k) {
+      dsm_box box;
+      outline one = OUTLINE_EMPTY;
+      for (int i = 0; i < 3; ++i) {   /* on a coarse grid, so that many sides lie in one plane */
+        box.low[i] = (double)rng_below(&r, 9) / 4 - 1;
+        box.high[i] = box.low[i] + (double)rng_below(&r, 3) / 4;
+      }
+      outline_add(&sum, v.origin, &v.axes, perspective, &v.window, &box);
+      outline_add(&one, v.origin, &v.axes, perspective, &v.window, &box);
+      if (!(one.near_depth <= one.far_depth)) continue;
+      include(&truth.area, one.area.u0, one.area.v0);
+      include(&truth.area, one.area.u1, one.area.v1);
+      truth.near_depth = fmin(truth.near_depth, one.near_depth);
+      truth.far_depth = fmax(truth.far_depth, one.far_depth);
+    }
+    assert_seeded(&r, same(&sum, &truth));
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(perspective_is_exact),
     cmocka_unit_test(random_points_are_inside),
     cmocka_unit_test(orthographic_spans_the_corners),
+    cmocka_unit_test(many_are_the_sum_of_each),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
