@@ -189,7 +189,7 @@ bool ShadowMaps::Create(const LightSource& light, const ShadowSettings& settings
 	entry.light = &light;
 	entry.map.reset(map, ShadowPlugin::Api().map_destroy);
 	entry.photons = false;
-	for(vector<ObjectPtr>::const_iterator i(scene.objects.begin()); i != scene.objects.end() && !entry.photons; i++)
+	for(vector<ObjectPtr>::const_iterator i(scene.objects.begin()); i != scene.objects.end() && scene.photonSettings.photonsEnabled && !entry.photons; i++)
 		entry.photons = IsRefractingTarget(*i, light);
 	entry.atmosphere = light.Media_Interaction && light.Media_Attenuation && ((scene.fog != NULL) || !scene.atmosphere.empty());
 	entry.deep = (string(settings.Block().name) == "deep_shadow");
