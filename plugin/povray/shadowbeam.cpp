@@ -27,6 +27,25 @@ const double kRaysPerCell = 3.0;
 /// What is known of a point's place, relative to its coordinates.
 const double kRounding = 1.0e-14;
 
+/// A ray this near to a cell's edge, in cells, may have been sorted into either cell.
+const double kEdge = 1.0e-6;
+
+/// A side that is cut by this little by a row of cells leaves all of them.
+const double kLeastCut = 0.01;
+
+/// What floats are off by, and some more.
+const double kFloatRounding = 1.0e-6;
+
+/// What one instruction works on.
+typedef float Lanes __attribute__((vector_size(16)));
+typedef int IntLanes __attribute__((vector_size(16)));
+
+/// An end as a float, not in front of the true one.
+inline float Before(double end)
+{
+	return nextafterf(float(end), -HUGE_VALF);
+}
+
 /// Hidden or not is asked of at most so many blocks.
 const int kMostBlocksAsked = 16;
 
@@ -171,6 +190,17 @@ void ShadowBeam::Sort()
 	std::copy_backward(first.begin(), first.end() - 1, first.end());
 	first[0] = 0;
 
+	// three more, so that four can be read anywhere
+	across.assign(slots.size() + 3, 0.0f);
+	upward.assign(slots.size() + 3, 0.0f);
+	ends.assign(slots.size() + 3, HUGE_VALF);
+	for(size_t i = 0; i < slots.size(); i++)
+	{
+		across[i] = float((slots[i].u - low[0]) * perCell[0]);
+		upward[i] = float((slots[i].v - low[1]) * perCell[1]);
+		ends[i] = Before(slots[i].end);
+	}
+
 	blockEnds.resize(blocks[0] * blocks[1]);
 	for(size_t i = 0; i < blockEnds.size(); i++)
 		FindBlockEnd(i);
@@ -199,6 +229,7 @@ void ShadowBeam::Shorten(unsigned int slot, double depth)
 	const double before = s.end;
 
 	s.end = EndAt(rays[s.ray], depth);
+	ends[slot] = Before(s.end);
 	if(before > cellEnds[s.cell])
 		return;
 
@@ -283,64 +314,134 @@ bool ShadowBeam::Hides(const ShadowRect& rect) const
 	return true;
 }
 
-void ShadowBeam::Clip(const ShadowOutline& outline, int row, int& from, int& to) const
+/// Where the outline's sides cut the rows of cells, in cells from the left: linear in the row.
+struct ShadowBeam::Clip
 {
-	const double bottom = low[1] + row * cellSize[1], top = bottom + cellSize[1];
-	double left = outline.rect.low[0], right = outline.rect.high[0];
-
-	// a ray near a cell's edge may have been sorted into either cell
-	const double margin = 1.0e-6 * cellSize[1];
-	for(int i = 0; i < outline.sideCount; i++)
+	struct Cut
 	{
-		const ShadowOutline::Side& side = outline.sides[i];
-		if(fabs(side.a) < 1.0e-6)
-			continue;
-		const double most = side.c - min(side.b * (bottom - margin), side.b * (top + margin));
-		if(side.a > 0.0)
-			right = min(right, most / side.a);
-		else
-			left = max(left, most / side.a);
+		double at, step; ///< in row 0, and from row to row
+	};
+	Cut lefts[ShadowOutline::kMostSides + 1], rights[ShadowOutline::kMostSides + 1];
+	int leftCount, rightCount;
+
+	Clip(const ShadowBeam& beam, const ShadowOutline& outline) : leftCount(1), rightCount(1)
+	{
+		const Cut left = { (outline.rect.low[0] - beam.low[0]) * beam.perCell[0], 0.0 };
+		const Cut right = { (outline.rect.high[0] - beam.low[0]) * beam.perCell[0], 0.0 };
+		lefts[0] = left;
+		rights[0] = right;
+		for(int i = 0; i < outline.sideCount; i++)
+		{
+			const ShadowOutline::Side& side = outline.sides[i];
+			if(fabs(side.a) < kLeastCut)
+				continue;
+			// of a row's two edges, the one at which the side leaves more cells
+			const double across = 1.0 / side.a, slope = -side.b * across;
+			const bool top = (slope > 0.0) == (side.a > 0.0);
+			const double edge = beam.low[1] + (top ? 1.0 + kEdge : -kEdge) * beam.cellSize[1];
+			const Cut cut = { (side.c * across + slope * edge - beam.low[0]) * beam.perCell[0], slope * beam.cellSize[1] * beam.perCell[0] };
+			if(side.a > 0.0)
+				rights[rightCount++] = cut;
+			else
+				lefts[leftCount++] = cut;
+		}
 	}
-	from = CellOf(0, left - 1.0e-6 * cellSize[0]);
-	to = (left <= right) ? CellOf(0, right + 1.0e-6 * cellSize[0]) : from - 1;
-}
+
+	/// The row's cells that the sides leave, from first to last.
+	void Row(int row, int cells, int& from, int& to) const
+	{
+		double left = lefts[0].at, right = rights[0].at;
+
+		for(int i = 1; i < leftCount; i++)
+			left = max(left, lefts[i].at + row * lefts[i].step);
+		for(int i = 1; i < rightCount; i++)
+			right = min(right, rights[i].at + row * rights[i].step);
+		from = Within(left - kEdge, cells);
+		to = (left <= right) ? Within(right + kEdge, cells) : from - 1;
+	}
+	static int Within(double cell, int cells) { return (cell > 0.0) ? ((cell < cells) ? int(cell) : cells - 1) : 0; }
+};
+
+/// The outline's sides in float cells, for four rays at a time. They let through a little more, so that rounding costs none.
+struct ShadowBeam::Sides
+{
+	Lanes a[ShadowOutline::kMostSides], b[ShadowOutline::kMostSides], c[ShadowOutline::kMostSides], nearness;
+	const int count;
+
+	Sides(const ShadowBeam& beam, const ShadowOutline& outline) : count(outline.sideCount)
+	{
+		const Lanes zero = { 0.0f, 0.0f, 0.0f, 0.0f };
+		for(int i = 0; i < count; i++)
+		{
+			const ShadowOutline::Side& side = outline.sides[i];
+			const double x = side.a * beam.cellSize[0], y = side.b * beam.cellSize[1];
+			const double most = side.c - side.a * beam.low[0] - side.b * beam.low[1];
+			a[i] = zero + float(x);
+			b[i] = zero + float(y);
+			c[i] = zero + float(most + kFloatRounding * (kMostCells * (fabs(x) + fabs(y)) + fabs(most)));
+		}
+		nearness = zero + nextafterf(float(outline.rect.nearness), HUGE_VALF);
+	}
+
+	/// Of four slots, all bits of those that are inside and do not end before the outline.
+	IntLanes Hold(const ShadowBeam& beam, unsigned int slot) const
+	{
+		Lanes x, y, end;
+		memcpy(&x, &beam.across[slot], sizeof(x));
+		memcpy(&y, &beam.upward[slot], sizeof(y));
+		memcpy(&end, &beam.ends[slot], sizeof(end));
+		IntLanes held = (nearness >= end);
+		for(int i = 0; i < count; i++)
+			held &= (a[i] * x + b[i] * y <= c[i]);
+		return held;
+	}
+};
 
 void ShadowBeam::Select(const ShadowOutline& outline, std::vector<unsigned int>& selected) const
 {
 	const ShadowRect& rect = outline.rect;
-	const double *plane = outline.plane;
-	const double slopeHalf = 0.5 * (fabs(plane[0]) * cellSize[0] + fabs(plane[1]) * cellSize[1]);
 
-	selected.clear();
 	if((rect.low[0] > high[0]) || (rect.high[0] < low[0]) || (rect.low[1] > high[1]) || (rect.high[1] < low[1]) || (rect.nearness < end))
 		return;
-	const int y1 = CellOf(1, rect.high[1] + 1.0e-6 * cellSize[1]);
-	for(int y = CellOf(1, rect.low[1] - 1.0e-6 * cellSize[1]); y <= y1; y++)
+	const Clip clip(*this, outline);
+	const Sides sides(*this, outline);
+	const int y1 = CellOf(1, rect.high[1] + kEdge * cellSize[1]);
+	for(int y = CellOf(1, rect.low[1] - kEdge * cellSize[1]); y <= y1; y++)
 	{
 		int from, to;
-		Clip(outline, y, from, to);
-		const double rowNearness = plane[1] * (low[1] + (y + 0.5) * cellSize[1]) + plane[2] + slopeHalf;
-		for(int x = from; x <= to; x++)
+		clip.Row(y, cells[0], from, to);
+		const unsigned int last = (from <= to) ? first[y * cells[0] + to + 1] : 0; // cells of a row lie one behind the other
+		for(unsigned int i = (from <= to) ? first[y * cells[0] + from] : 0; i < last; i += 4)
 		{
-			const int cell = y * cells[0] + x;
-			const double nearness = min(rect.nearness, rowNearness + plane[0] * (low[0] + (x + 0.5) * cellSize[0]));
-			if(nearness < cellEnds[cell])
+			const IntLanes held(sides.Hold(*this, i));
+			long long any[2];
+			memcpy(any, &held, sizeof(any));
+			if((any[0] | any[1]) == 0)
 				continue;
-			for(unsigned int i = first[cell]; i < first[cell + 1]; i++)
-			{
-				const Slot& slot = slots[i];
-				if((rect.nearness >= slot.end) && (plane[0] * slot.u + plane[1] * slot.v + plane[2] >= slot.end) && outline.Holds(slot.u, slot.v))
-					selected.push_back(i);
-			}
+			for(unsigned int k = 0; (k < 4) && (i + k < last); k++)
+				if(held[k] && (!outline.round || outline.Holds(slots[i + k].u, slots[i + k].v)))
+					selected.push_back(i + k);
 		}
 	}
 }
 
+void ShadowBeam::Drop(const double plane[3], size_t from, std::vector<unsigned int>& selected) const
+{
+	size_t kept = from;
+
+	for(size_t i = from; i < selected.size(); i++)
+	{
+		const Slot& slot = slots[selected[i]];
+		if(plane[0] * slot.u + plane[1] * slot.v + plane[2] >= slot.end)
+			selected[kept++] = selected[i];
+	}
+	selected.resize(kept);
+}
+
 void ShadowBeam::SelectAll(std::vector<unsigned int>& selected) const
 {
-	selected.resize(slots.size());
 	for(size_t i = 0; i < slots.size(); i++)
-		selected[i] = i;
+		selected.push_back(i);
 }
 
 }

@@ -38,9 +38,12 @@ class ShadowBeam
 		/// Whether all rays in the rectangle end before its nearness. May say no where they do.
 		bool Hides(const ShadowRect& rect) const;
 
-		/// All rays inside the outline that do not end before it.
+		/// Adds all rays inside the outline that do not end before the nearest of it, and maybe a few beside it.
 		void Select(const ShadowOutline& outline, std::vector<unsigned int>& selected) const;
 		void SelectAll(std::vector<unsigned int>& selected) const;
+
+		/// Takes out the rays that end before a plane; see ShadowOutline. The first `from` stay.
+		void Drop(const double plane[3], size_t from, std::vector<unsigned int>& selected) const;
 
 		/// The farthest end of all.
 		double End() const { return end; }
@@ -48,6 +51,8 @@ class ShadowBeam
 		enum { kBlock = 4 }; ///< cells along a block's side
 		enum { kMostCells = 64 }; ///< along a side
 
+		struct Clip;
+		struct Sides;
 		struct Slot
 		{
 			double u, v, end;
@@ -60,6 +65,7 @@ class ShadowBeam
 		double low[2], high[2], perCell[2], cellSize[2];
 		int cells[2], blocks[2];
 		std::vector<Slot> slots, unsorted;
+		std::vector<float> across, upward, ends; ///< of the slots: u and v in cells, and their ends
 		std::vector<unsigned int> first; ///< of each cell's slots; one more than cells
 		std::vector<double> cellEnds, blockEnds;
 		double end;
@@ -70,8 +76,6 @@ class ShadowBeam
 		int CellOf(int axis, double x) const;
 		void FindBlockEnd(int block);
 		void FindEnd();
-		/// Cells of a row that the outline's sides leave, from first to last.
-		void Clip(const ShadowOutline& outline, int row, int& from, int& to) const;
 };
 
 }

@@ -27,6 +27,8 @@ const double kOutsizedFactor = 10.0;
 /// POV-Ray keeps boxes in floats and lets infinite objects have a box of this order.
 const double kInfiniteLength = 1.0e9;
 
+const size_t kCacheLine = 64; // bytes
+
 bool BoxOf(const ObjectBase *object, dsm_box& box)
 {
 	for(int i = 0; i < 3; i++)
@@ -118,24 +120,55 @@ ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : hasVolumes(false)
 		}
 	for(vector<ObjectPtr>::const_iterator i(unmapped.begin()); i != unmapped.end(); i++)
 		hasUnmappedVolumes = hasUnmappedVolumes || HasVolume(*i);
-
-	tree.reset(new ShadowTree(boxes));
-	Sketch();
 }
 
-/// In the order of the tree: what is looked at together lies together.
-void ShadowCasters::Sketch()
+void ShadowCasters::Prepare() const
 {
+	boost::lock_guard<boost::mutex> lock(mutex);
+
+	if(tree)
+		return;
+	boost::scoped_ptr<ShadowTree> made(new ShadowTree(boxes));
+	Sketch(*made);
+	tree.swap(made);
+}
+
+void ShadowCasters::FetchObject(unsigned int place) const
+{
+	const ObjectBase *object = objects[tree->Box(place)];
+	const char *transform = reinterpret_cast<const char *>((object->Trans != NULL) ? &object->Trans->inverse : NULL);
+
+	if(transform != NULL)
+		for(size_t i = 0; i < sizeof(MATRIX); i += kCacheLine)
+			__builtin_prefetch(transform + i);
+	for(size_t i = kCacheLine; i < sizeof(ObjectBase); i += kCacheLine)
+		__builtin_prefetch(reinterpret_cast<const char *>(object) + i);
+}
+
+/// In the order of the tree: what is looked at together lies together. But the objects lie in memory in their own order.
+void ShadowCasters::Sketch(const ShadowTree& inOrderOf) const
+{
+	vector<unsigned char> shapeOf(objects.size());
+	vector<ShadowRod> rodOf;
 	ShadowRod rod;
 
-	for(unsigned int place = 0; place < tree->Places(); place++)
+	for(size_t i = 0; i < objects.size(); i++)
 	{
-		shapes.push_back(ShadowShapeOf(objects[tree->Box(place)], rod));
-		if(shapes.back() != kRodShape)
+		shapeOf[i] = ShadowShapeOf(objects[i], rod);
+		if(shapeOf[i] != kRodShape)
 			continue;
-		if(rods.empty())
-			rods.resize(tree->Places());
-		rods[place] = rod;
+		if(rodOf.empty())
+			rodOf.resize(objects.size());
+		rodOf[i] = rod;
+	}
+
+	shapes.resize(objects.size());
+	rods.resize(rodOf.size());
+	for(unsigned int place = 0; place < shapes.size(); place++)
+	{
+		shapes[place] = shapeOf[inOrderOf.Box(place)];
+		if(shapes[place] == kRodShape)
+			rods[place] = rodOf[inOrderOf.Box(place)];
 	}
 }
 
@@ -143,15 +176,17 @@ void ShadowCasters::Sketch()
 /// pixel of the map. Such objects are few and simple: the look-up tests them instead.
 void ShadowCasters::SplitOffOutsized()
 {
-	vector<unsigned int> bySize;
-	vector<double> size;
+	vector<unsigned int> bySize(boxes.size());
+	vector<double> size(boxes.size());
 
 	for(unsigned int i = 0; i < boxes.size(); i++)
 	{
-		bySize.push_back(i);
-		size.push_back(HalfDiagonal(boxes[i]));
+		bySize[i] = i;
+		size[i] = HalfDiagonal(boxes[i]);
 	}
-	std::sort(bySize.begin(), bySize.end(), LargerFirst(size));
+	// the order of the others, and which of them are how large, does not matter
+	const unsigned int large = min(boxes.size(), size_t(kMostOutsized + 1));
+	std::partial_sort(bySize.begin(), bySize.begin() + large, bySize.end(), LargerFirst(size));
 
 	// from the small end: the union of all casters smaller than the one looked at
 	unsigned int outsized = 0;
@@ -166,6 +201,8 @@ void ShadowCasters::SplitOffOutsized()
 		if((i <= kMostOutsized) && (size[bySize[i - 1]] > kOutsizedFactor * HalfDiagonal(rest)) && !HasVolume(objects[bySize[i - 1]]))
 			outsized = max(outsized, i);
 	}
+	if(outsized == 0)
+		return;
 
 	for(unsigned int i = 0; i < outsized; i++)
 		if(HasVolume(objects[bySize[i]]))

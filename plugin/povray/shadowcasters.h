@@ -6,6 +6,7 @@
 #define POVRAY_BACKEND_SHADOWCASTERS_H
 
 #include <boost/scoped_ptr.hpp>
+#include <boost/thread/mutex.hpp>
 
 #include "backend/shadow/shadowtree.h"
 #include "backend/shadow/shadowvolumes.h"
@@ -36,6 +37,9 @@ class ShadowCasters
 		/// Objects whose inside holds the point.
 		void Containing(const Vector3d& point, TraceThreadData *thread, vector<ObjectPtr>& out) const;
 
+		/// To be called before any ray is traced: what light rays are found with is made when the first one comes.
+		void Prepare() const;
+
 		/// The boxes as a tree, and the object that a box of the tree belongs to.
 		const ShadowTree& Tree() const { return *tree; }
 		ObjectPtr Object(unsigned int box) const { return objects[box]; }
@@ -46,18 +50,36 @@ class ShadowCasters
 		{
 			return (shapes[place] == kRodShape) ? outline.Draw(frame, rods[place]) : outline.Draw(frame, ShadowShape(shapes[place]), objects[tree->Box(place)]);
 		}
+
+		/// Sets the outline's plane, if drawing has left that.
+		void Face(unsigned int place, const ShadowFrame& frame, ShadowOutline& outline) const
+		{
+			if(shapes[place] == kRodShape)
+				outline.Face(frame, rods[place]);
+		}
+
+		/// Has memory send what drawing, or an intersection test, will need.
+		void FetchDrawing(unsigned int place) const
+		{
+			if(!rods.empty())
+				__builtin_prefetch(&rods[place]);
+		}
+		void FetchObject(unsigned int place) const;
 	private:
 		vector<ObjectPtr> objects;    ///< parallel to boxes
 		vector<dsm_box> boxes;
-		vector<unsigned char> shapes; ///< ShadowShape, by place in the tree
-		vector<ShadowRod> rods;       ///< empty if there is none; else parallel to shapes
 		vector<ObjectPtr> unmapped;
-		boost::scoped_ptr<ShadowTree> tree;
+
+		mutable boost::mutex mutex;   ///< guards the making of the next three
+		mutable boost::scoped_ptr<ShadowTree> tree;
+		mutable vector<unsigned char> shapes; ///< ShadowShape, by place in the tree
+		mutable vector<ShadowRod> rods;       ///< empty if there is none; else parallel to shapes
+
 		bool hasVolumes, hasUnmappedVolumes;
 		ShadowVolumes volumes;
 
 		void SplitOffOutsized();
-		void Sketch();
+		void Sketch(const ShadowTree& inOrderOf) const;
 };
 
 }

@@ -41,6 +41,10 @@ const unsigned int kFewRays = 16;
 /// Nodes and boxes that a beam may cost, a ray. A walk of one ray alone costs some more.
 const size_t kBudget = 32;
 
+/// So many objects, and a few more, are looked at side by side. Waiting for memory is most of what one costs alone; but
+/// they do not hide each other.
+const size_t kTogether = 16;
+
 /// Surfaces that let light through, kept for one batch: about 14 MB.
 const size_t kMostSurfaces = 65536;
 
@@ -61,6 +65,7 @@ ShadowHits::ShadowHits(const ShadowCasters& c, TraceThreadData *t) :
 
 unsigned int ShadowHits::Find(const dsm_ray *r, unsigned int count)
 {
+	casters.Prepare();
 	rays = r;
 	byObject = false;
 	if((order == kRays) || (count < kFewRays) || ((order == kObjects) && (casters.Boxes().size() < kFewCasters)))
@@ -87,8 +92,6 @@ void ShadowHits::Start(Track& track, const dsm_ray& ray)
 
 ShadowHits::Result ShadowHits::FindByObject(unsigned int count)
 {
-	unsigned int place;
-
 	// the beam may look this much farther than a ray, so that its rounding costs no hit
 	if(!beam.Aim(rays, count, 2.0 * kAhead))
 		return kNoBeam;
@@ -98,30 +101,73 @@ ShadowHits::Result ShadowHits::FindByObject(unsigned int count)
 	found[kObjects].veils.clear();
 	found[kObjects].surfaces.clear();
 
-	ShadowTree::Sweep sweep(casters.Tree(), beam, heap, kBudget * count);
-	while(sweep.Next(place))
+	ShadowTree::Sweep sweep(casters.Tree(), beam, path, kBudget * count);
+	for(bool more = true; more; )
 	{
-		FindInOutline(place);
+		unsigned int first, end;
+
+		places.clear();
+		while((places.size() < kTogether) && (more = sweep.Next(first, end)))
+			for(unsigned int place = first; place < end; place++)
+			{
+				casters.FetchDrawing(place);
+				places.push_back(place);
+			}
+		FindTogether();
 		if((found[kObjects].surfaces.size() > kMostSurfaces) && (count > 1))
 			return kTooMany;
 	}
 	return sweep.GaveUp() ? kNoBeam : kDone;
 }
 
-/// All hits of the object at a place of the tree.
-void ShadowHits::FindInOutline(unsigned int place)
+/// All hits of the objects at some places of the tree. What each step needs is fetched from memory in the step before.
+void ShadowHits::FindTogether()
+{
+	selected.clear();
+	wanted.clear();
+	for(vector<unsigned int>::const_iterator place(places.begin()); place != places.end(); place++)
+	{
+		const Wanted one = { *place, selected.size() };
+
+		SelectRays(*place);
+		if(selected.size() == one.first)
+			continue;
+		wanted.push_back(one);
+		__builtin_prefetch(casters.Object(casters.Tree().Box(*place)));
+	}
+	const Wanted none = { 0, selected.size() };
+	wanted.push_back(none);
+	for(size_t i = 0; i + 1 < wanted.size(); i++)
+		casters.FetchObject(wanted[i].place);
+	for(size_t i = 0; i + 1 < wanted.size(); i++)
+		AskSelected(wanted[i].place, wanted[i].first, wanted[i + 1].first);
+}
+
+/// Adds the rays that the object at a place of the tree may be hit by.
+void ShadowHits::SelectRays(unsigned int place)
 {
 	if(!casters.Draw(place, beam.Frame(), outline))
 		beam.SelectAll(selected);
 	else if(!beam.Hides(outline.rect))
-		beam.Select(outline, selected);
-	else
-		return;
-
-	const unsigned int caster = casters.Tree().Box(place);
-	for(vector<unsigned int>::const_iterator slot(selected.begin()); slot != selected.end(); slot++)
 	{
-		const unsigned int i = beam.Ray(*slot);
+		const size_t before = selected.size();
+
+		beam.Select(outline, selected);
+		if(selected.size() == before)
+			return;
+		casters.Face(place, beam.Frame(), outline);
+		beam.Drop(outline.plane, before, selected);
+	}
+}
+
+/// All hits of the object at a place of the tree, with some of the selected rays.
+void ShadowHits::AskSelected(unsigned int place, size_t first, size_t end)
+{
+	const unsigned int caster = casters.Tree().Box(place);
+
+	for(size_t slot = first; slot < end; slot++)
+	{
+		const unsigned int i = beam.Ray(selected[slot]);
 		Track& track = tracks[i];
 		double enter, leave;
 
@@ -130,7 +176,7 @@ void ShadowHits::FindInOutline(unsigned int place)
 		const double before = track.end;
 		Ask(caster, rays[i], enter, leave, track, found[kObjects]);
 		if(track.end < before)
-			beam.Shorten(*slot, track.end);
+			beam.Shorten(selected[slot], track.end);
 	}
 }
 

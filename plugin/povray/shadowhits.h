@@ -70,6 +70,13 @@ class ShadowHits
 			vector<Intersection> surfaces;
 		};
 
+		/// An object that has rays from this one of `selected` on.
+		struct Wanted
+		{
+			unsigned int place;
+			size_t first;
+		};
+
 		const ShadowCasters& casters;
 		TraceThreadData *thread;
 		Order order;
@@ -84,15 +91,18 @@ class ShadowHits
 		vector<Track> tracks;
 		vector<Hit> hits, others;
 		ShadowTree::Stack stack;
-		ShadowTree::Heap heap;
+		ShadowTree::Path path;
 		ShadowBeam beam;
 		ShadowOutline outline;
-		vector<unsigned int> selected;
+		vector<unsigned int> places, selected;
+		vector<Wanted> wanted;
 		Ray probe;
 
 		enum Result { kDone, kTooMany, kNoBeam };
 		Result FindByObject(unsigned int count);
-		void FindInOutline(unsigned int place);
+		void FindTogether();
+		void SelectRays(unsigned int place);
+		void AskSelected(unsigned int place, size_t first, size_t end);
 		void FindByRay(const dsm_ray& ray, vector<Hit>& out);
 		void Ask(unsigned int caster, const dsm_ray& ray, double enter, double leave, Track& track, Found& out);
 		void Collect(const Track& track, const Found& in, vector<Hit>& out) const;

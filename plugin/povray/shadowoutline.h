@@ -91,6 +91,9 @@ struct ShadowOutline
 	bool Draw(const ShadowFrame& frame, ShadowShape shape, const ObjectBase *object);
 	bool Draw(const ShadowFrame& frame, const ShadowRod& rod);
 
+	/// Sets the plane of a rod that has been drawn: few of those that are drawn are in any ray's way.
+	void Face(const ShadowFrame& frame, const ShadowRod& rod);
+
 	bool Holds(double u, double v) const
 	{
 		if(round)

@@ -143,13 +143,23 @@ bool ShadowOutline::Draw(const ShadowFrame& frame, const ShadowRod& rod)
 	}
 	rect.nearness = frame.Nearness(nearest);
 
-	double normal[3];
-	const double axis[3] = { q[1][0] - q[0][0], q[1][1] - q[0][1], q[1][2] - q[0][2] };
 	plane[0] = plane[1] = 0.0;
 	plane[2] = rect.nearness;
-	if(FaceAxis(frame, q[0], axis, normal))
-		SetPlane(frame, normal, min(ShadowDot(normal, q[0]) - radius[0], ShadowDot(normal, q[1]) - radius[1]));
 	return true;
+}
+
+void ShadowOutline::Face(const ShadowFrame& frame, const ShadowRod& rod)
+{
+	double q[2][3], normal[3];
+
+	for(int i = 0; i < 2; i++)
+	{
+		const double end[3] = { rod.ends[i][0], rod.ends[i][1], rod.ends[i][2] };
+		frame.Point(end, q[i]);
+	}
+	const double axis[3] = { q[1][0] - q[0][0], q[1][1] - q[0][1], q[1][2] - q[0][2] };
+	if(FaceAxis(frame, q[0], axis, normal))
+		SetPlane(frame, normal, min(ShadowDot(normal, q[0]) - rod.radii[0], ShadowDot(normal, q[1]) - rod.radii[1]) - frame.slack);
 }
 
 }

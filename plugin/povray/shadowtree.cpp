@@ -17,44 +17,72 @@ namespace
 {
 
 const unsigned int kLeafBoxes = 4;
-const int kBins = 16;
 
-double Centre(const dsm_box& box, int axis)
-{
-	return 0.5 * (box.low[axis] + box.high[axis]);
-}
+/// Of parts of few boxes there are very many, and each costs its bins.
+enum { kMostBins = 16, kFewBins = 8, kFewestBins = 4 };
+const unsigned int kFewItems = 64, kFewestItems = 16;
 
-dsm_box Nothing()
+/// What one instruction works on. The fourth lane says nothing.
+typedef float Lanes __attribute__((vector_size(16)));
+typedef int IntLanes __attribute__((vector_size(16)));
+
+inline Lanes Least(Lanes a, Lanes b) { return (a < b) ? a : b; }
+inline Lanes Most(Lanes a, Lanes b) { return (a > b) ? a : b; }
+
+/// A box.
+struct Item
 {
-	dsm_box box;
-	for(int i = 0; i < 3; i++)
+	Lanes low, high;
+
+	void Clear()
 	{
-		box.low[i] = HUGE_VAL;
-		box.high[i] = -HUGE_VAL;
+		const Lanes zero = { 0.0f, 0.0f, 0.0f, 0.0f };
+		low = zero + HUGE_VALF;
+		high = zero - HUGE_VALF;
 	}
-	return box;
-}
+	void Include(Lanes otherLow, Lanes otherHigh)
+	{
+		low = Least(otherLow, low);
+		high = Most(otherHigh, high);
+	}
+	void Include(const Item& other) { Include(other.low, other.high); }
+	Lanes TwiceCentre() const { return low + high; }
 
-/// Half the surface: the chance that a ray hits the box.
-double Area(const dsm_box& box)
-{
-	const double x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
-	return (x < 0.0) ? 0.0 : x * y + y * z + z * x;
-}
+	/// Half the surface: the chance that a ray hits the box.
+	float Area() const
+	{
+		const Lanes size = high - low;
+		return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+	}
+};
 
-int BinOf(const dsm_box& box, const dsm_box& centres, int axis)
+/// Where centres are sorted into bins of equal width.
+class Bins
 {
-	const double width = centres.high[axis] - centres.low[axis];
-	return min(kBins - 1, int(kBins * (Centre(box, axis) - centres.low[axis]) / width));
-}
+	public:
+		const int count;
 
-struct BelowBin
-{
-	const vector<dsm_box>& boxes;
-	const dsm_box& centres;
-	const int axis, bin;
-	BelowBin(const vector<dsm_box>& b, const dsm_box& c, int a, int n) : boxes(b), centres(c), axis(a), bin(n) { }
-	bool operator()(unsigned int i) const { return BinOf(boxes[i], centres, axis) < bin; }
+		/// @param[in]      centres     twice the centres of so many items
+		Bins(const Item& centres, unsigned int items) :
+			count((items < kFewestItems) ? kFewestBins : (items < kFewItems) ? kFewBins : kMostBins), from(centres.low)
+		{
+			for(int i = 0; i < 4; i++)
+			{
+				const float perWidth = count / (centres.high[i] - centres.low[i]);
+				scale[i] = (perWidth < HUGE_VALF) ? perWidth : 0.0f;
+				last[i] = count - 1;
+			}
+		}
+
+		/// Along each axis.
+		IntLanes Of(const Item& item) const
+		{
+			const IntLanes bin = __builtin_convertvector((item.TwiceCentre() - from) * scale, IntLanes);
+			return (bin < last) ? bin : last;
+		}
+	private:
+		Lanes from, scale;
+		IntLanes last;
 };
 
 }
@@ -68,99 +96,135 @@ void Include(dsm_box& box, const dsm_box& other)
 	}
 }
 
-ShadowTree::ShadowTree(const vector<dsm_box>& b) : boxes(b)
+/// Moves the boxes themselves, so that each level of the tree reads memory from front to back.
+class ShadowTree::Builder
 {
-	for(unsigned int i = 0; i < boxes.size(); i++)
-		order.push_back(i);
-	if(boxes.empty())
-		return;
-	nodes.reserve(boxes.size());
-	nodes.resize(1);
-	Build(0, 0, boxes.size());
-	for(unsigned int i = 0; i < order.size(); i++)
-		leaves.push_back(Round(boxes[order[i]]));
-}
+	public:
+		Builder(ShadowTree& t, const vector<dsm_box>& boxes);
+	private:
+		ShadowTree& tree;
+		vector<Item> items; ///< in the order of the leaves
 
-ShadowTree::Slabs ShadowTree::Round(const dsm_box& box)
+		/// A stretch of `items`.
+		struct Part
+		{
+			unsigned int first, count;
+			Item all, centres;
+		};
+
+		void Build(unsigned int node, const Part& part);
+		bool Cheapest(const Part& part, const Bins& bins, int& axis, int& bin) const;
+		void Divide(const Part& part, const Bins& bins, int axis, int bin, Part& left, Part& right);
+		void Halve(const Part& part, Part& left, Part& right) const;
+		void Measure(Part& part) const;
+
+		static Slabs Sides(const Item& item)
+		{
+			Slabs slabs;
+			for(int i = 0; i < 3; i++)
+			{
+				slabs.side[0][i] = item.low[i];
+				slabs.side[1][i] = item.high[i];
+			}
+			return slabs;
+		}
+};
+
+ShadowTree::Builder::Builder(ShadowTree& t, const vector<dsm_box>& boxes) : tree(t), items(boxes.size())
 {
-	Slabs slabs;
-	for(int axis = 0; axis < 3; axis++)
+	Part whole;
+
+	whole.first = 0;
+	whole.count = boxes.size();
+	tree.order.resize(whole.count);
+	for(unsigned int i = 0; i < whole.count; i++)
 	{
-		slabs.side[0][axis] = nextafterf(float(box.low[axis]), -HUGE_VALF);
-		slabs.side[1][axis] = nextafterf(float(box.high[axis]), HUGE_VALF);
-	}
-	return slabs;
-}
-
-void ShadowTree::Build(unsigned int node, unsigned int first, unsigned int count)
-{
-	dsm_box all(Nothing()), centres(Nothing());
-
-	for(unsigned int i = first; i < first + count; i++)
-	{
-		const dsm_box& box = boxes[order[i]];
-		Include(all, box);
+		Item& item = items[i];
 		for(int axis = 0; axis < 3; axis++)
 		{
-			centres.low[axis] = min(centres.low[axis], Centre(box, axis));
-			centres.high[axis] = max(centres.high[axis], Centre(box, axis));
+			item.low[axis] = nextafterf(float(boxes[i].low[axis]), -HUGE_VALF);
+			item.high[axis] = nextafterf(float(boxes[i].high[axis]), HUGE_VALF);
+		}
+		item.low[3] = item.high[3] = 0.0f;
+		tree.order[i] = i;
+	}
+	Measure(whole);
+	tree.nodes.reserve(whole.count);
+	tree.nodes.resize(1);
+	Build(0, whole);
+	tree.leaves.resize(whole.count);
+	for(unsigned int i = 0; i < whole.count; i++)
+		tree.leaves[i] = Sides(items[i]);
+}
+
+void ShadowTree::Builder::Build(unsigned int node, const Part& part)
+{
+	Node& here = tree.nodes[node];
+	here.slabs = Sides(part.all);
+	here.first = part.first;
+	here.count = part.count;
+	if(part.count <= kLeafBoxes)
+		return;
+
+	const unsigned int children = tree.nodes.size();
+	here.first = children;
+	here.count = 0;
+	tree.nodes.resize(children + 2);
+
+	Part left, right;
+	const Bins bins(part.centres, part.count);
+	int axis, bin;
+	if(Cheapest(part, bins, axis, bin))
+		Divide(part, bins, axis, bin, left, right);
+	else
+		Halve(part, left, right);
+	Build(children, left);
+	Build(children + 1, right);
+}
+
+/// The split after which a ray meets the fewest boxes.
+/// @return     false if all centres are in one bin
+bool ShadowTree::Builder::Cheapest(const Part& part, const Bins& bins, int& bestAxis, int& bestBin) const
+{
+	unsigned int counts[3][kMostBins] = { { 0 } };
+	Item boxes[3][kMostBins];
+	float best = HUGE_VALF;
+
+	for(int axis = 0; axis < 3; axis++)
+		for(int bin = 0; bin < bins.count; bin++)
+			boxes[axis][bin].Clear();
+	for(unsigned int i = part.first; i < part.first + part.count; i++)
+	{
+		const Item item(items[i]);
+		const IntLanes bin(bins.Of(item));
+		for(int axis = 0; axis < 3; axis++)
+		{
+			boxes[axis][bin[axis]].Include(item);
+			counts[axis][bin[axis]]++;
 		}
 	}
 
-	nodes[node].slabs = Round(all);
-	nodes[node].first = first;
-	nodes[node].count = count;
-	if(count <= kLeafBoxes)
-		return;
-
-	const unsigned int half = Split(centres, first, count);
-	const unsigned int left = nodes.size();
-	nodes[node].first = left;
-	nodes[node].count = 0;
-	nodes.resize(left + 2);
-	Build(left, first, half);
-	Build(left + 1, first + half, count - half);
-}
-
-/// Reorders the boxes so that the two parts of the cheapest split lie one behind the other.
-/// @return     size of the first part, neither 0 nor all
-unsigned int ShadowTree::Split(const dsm_box& centres, unsigned int first, unsigned int count)
-{
-	double best = HUGE_VAL;
-	int bestAxis = 0, bestBin = 0;
-
 	for(int axis = 0; axis < 3; axis++)
 	{
-		unsigned int counts[kBins] = { 0 };
-		dsm_box bins[kBins];
-		double rightCost[kBins];
-
-		if(!(centres.high[axis] > centres.low[axis]))
-			continue;
-		std::fill(bins, bins + kBins, Nothing());
-		for(unsigned int i = first; i < first + count; i++)
-		{
-			const int bin = BinOf(boxes[order[i]], centres, axis);
-			counts[bin]++;
-			Include(bins[bin], boxes[order[i]]);
-		}
-
-		dsm_box part(Nothing());
+		float rightCost[kMostBins];
 		unsigned int number = 0;
-		for(int bin = kBins - 1; bin > 0; bin--)
+		Item side;
+
+		side.Clear();
+		for(int bin = bins.count - 1; bin > 0; bin--)
 		{
-			Include(part, bins[bin]);
-			number += counts[bin];
-			rightCost[bin] = Area(part) * number;
+			side.Include(boxes[axis][bin]);
+			number += counts[axis][bin];
+			rightCost[bin] = side.Area() * number;
 		}
-		part = Nothing();
+		side.Clear();
 		number = 0;
-		for(int bin = 1; bin < kBins; bin++)
+		for(int bin = 1; bin < bins.count; bin++)
 		{
-			Include(part, bins[bin - 1]);
-			number += counts[bin - 1];
-			const double cost = Area(part) * number + rightCost[bin];
-			if((number > 0) && (number < count) && (cost < best))
+			side.Include(boxes[axis][bin - 1]);
+			number += counts[axis][bin - 1];
+			const float cost = side.Area() * number + rightCost[bin];
+			if((number > 0) && (number < part.count) && (cost < best))
 			{
 				best = cost;
 				bestAxis = axis;
@@ -168,11 +232,72 @@ unsigned int ShadowTree::Split(const dsm_box& centres, unsigned int first, unsig
 			}
 		}
 	}
+	return best < HUGE_VALF;
+}
 
-	if(bestBin == 0) // all centres coincide
-		return count / 2;
-	vector<unsigned int>::iterator begin(order.begin() + first);
-	return std::partition(begin, begin + count, BelowBin(boxes, centres, bestAxis, bestBin)) - begin;
+void ShadowTree::Builder::Divide(const Part& part, const Bins& bins, int axis, int bin, Part& left, Part& right)
+{
+	unsigned int begin = part.first, end = part.first + part.count;
+	Item all[2], centres[2]; // of the left part and the right
+
+	for(int side = 0; side < 2; side++)
+	{
+		all[side].Clear();
+		centres[side].Clear();
+	}
+	while(begin < end)
+	{
+		const unsigned int last = end - 1;
+		const Item item(items[begin]), other(items[last]);
+		const unsigned int box = tree.order[begin], otherBox = tree.order[last];
+		const int side = (bins.Of(item)[axis] < bin) ? 0 : 1;
+
+		all[side].Include(item);
+		centres[side].Include(item.TwiceCentre(), item.TwiceCentre());
+		// both are written, so that there is no jump to guess
+		const unsigned int here = side ? last : begin, there = side ? begin : last;
+		items[there] = other;
+		items[here] = item;
+		tree.order[there] = otherBox;
+		tree.order[here] = box;
+		begin += 1 - side;
+		end -= side;
+	}
+	left.first = part.first;
+	left.count = end - part.first;
+	left.all = all[0];
+	left.centres = centres[0];
+	right.first = end;
+	right.count = part.count - left.count;
+	right.all = all[1];
+	right.centres = centres[1];
+}
+
+void ShadowTree::Builder::Halve(const Part& part, Part& left, Part& right) const
+{
+	left.first = part.first;
+	left.count = part.count / 2;
+	right.first = part.first + left.count;
+	right.count = part.count - left.count;
+	Measure(left);
+	Measure(right);
+}
+
+void ShadowTree::Builder::Measure(Part& part) const
+{
+	part.all.Clear();
+	part.centres.Clear();
+	for(unsigned int i = part.first; i < part.first + part.count; i++)
+	{
+		part.all.Include(items[i]);
+		part.centres.Include(items[i].TwiceCentre(), items[i].TwiceCentre());
+	}
+}
+
+ShadowTree::ShadowTree(const vector<dsm_box>& boxes)
+{
+	if(!boxes.empty())
+		Builder(*this, boxes);
 }
 
 ShadowTree::Walk::Walk(const ShadowTree& t, const dsm_ray& r, Stack& s) : tree(t), line(r), stack(s), leafItem(0), leafEnd(0)
@@ -230,51 +355,64 @@ bool ShadowTree::Walk::Next(double end, unsigned int& box, double& enter, double
 	}
 }
 
-ShadowTree::Sweep::Sweep(const ShadowTree& t, const ShadowBeam& b, Heap& h, size_t most) : tree(t), beam(b), heap(h), budget(most)
+ShadowTree::Sweep::Sweep(const ShadowTree& t, const ShadowBeam& b, Path& p, size_t most) : tree(t), beam(b), path(p), budget(most)
 {
-	heap.clear();
-	if(!tree.nodes.empty())
-		Push(tree.nodes[0].slabs, 0, false);
+	Ahead root;
+
+	path.clear();
+	root.node = 0;
+	if(!tree.nodes.empty() && beam.Meets(tree.nodes[0].slabs.side[0], tree.nodes[0].slabs.side[1], root.rect))
+		path.push_back(root);
 }
 
-inline void ShadowTree::Sweep::Push(const Slabs& slabs, unsigned int place, bool isBox)
+bool ShadowTree::Sweep::Next(unsigned int& first, unsigned int& end)
 {
-	ShadowRect rect;
-
-	if(!beam.Meets(slabs.side[0], slabs.side[1], rect))
-		return;
-	const Ahead ahead = { rect.nearness, place, isBox };
-	heap.push_back(ahead);
-	std::push_heap(heap.begin(), heap.end());
-}
-
-bool ShadowTree::Sweep::Next(unsigned int& place)
-{
-	while(!heap.empty() && (heap.front().nearness >= beam.End()) && (budget > 0))
+	while((budget > 0) && !path.empty())
 	{
-		const Ahead ahead = heap.front();
+		const Ahead ahead(path.back());
 
-		std::pop_heap(heap.begin(), heap.end());
-		heap.pop_back();
+		path.pop_back();
 		budget--;
-		if(ahead.isBox)
+		if(beam.Hides(ahead.rect))
+			continue;
+
+		const Node& node = tree.nodes[ahead.node];
+		if(node.count > 0)
 		{
-			place = ahead.place;
+			first = node.first;
+			end = node.first + node.count;
+			budget -= min(budget, size_t(node.count));
 			return true;
 		}
 
-		const Node& node = tree.nodes[ahead.place];
-		ShadowRect rect;
-		if(!beam.Meets(node.slabs.side[0], node.slabs.side[1], rect) || beam.Hides(rect))
-			continue;
-		if(node.count > 0)
-			for(unsigned int i = node.first; i < node.first + node.count; i++)
-				Push(tree.leaves[i], i, true);
-		else
-			for(unsigned int i = node.first; i < node.first + 2; i++)
-				Push(tree.nodes[i].slabs, i, false);
+		// the nearer child is looked at first, so it goes on top
+		Ahead left, right;
+		left.node = node.first;
+		right.node = node.first + 1;
+		const Node *children = &tree.nodes[node.first];
+		const bool meetsLeft = beam.Meets(children[0].slabs.side[0], children[0].slabs.side[1], left.rect);
+		const bool meetsRight = beam.Meets(children[1].slabs.side[0], children[1].slabs.side[1], right.rect);
+		const bool leftFirst = (left.rect.nearness > right.rect.nearness);
+		if(meetsLeft && !leftFirst)
+			Push(left);
+		if(meetsRight)
+			Push(right);
+		if(meetsLeft && leftFirst)
+			Push(left);
 	}
 	return false;
+}
+
+/// Memory is slow: what the node leads to is on its way when its turn comes.
+inline void ShadowTree::Sweep::Push(const Ahead& ahead)
+{
+	const Node& node = tree.nodes[ahead.node];
+
+	path.push_back(ahead);
+	if(node.count > 0)
+		return;
+	__builtin_prefetch(&tree.nodes[node.first]);
+	__builtin_prefetch(&tree.nodes[node.first + 1]);
 }
 
 }

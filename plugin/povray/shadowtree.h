@@ -19,6 +19,7 @@ void Include(dsm_box& box, const dsm_box& other);
 class ShadowTree
 {
 	private:
+		class Builder;
 		struct Slabs;
 	public:
 		explicit ShadowTree(const std::vector<dsm_box>& boxes);
@@ -60,36 +61,34 @@ class ShadowTree
 				unsigned int leafItem, leafEnd; ///< boxes of the current leaf that are still to be seen
 		};
 
-		/// Scratch of a sweep, kept by the caller from beam to beam. What lies nearest to the light is on top.
+		/// Scratch of a sweep, kept by the caller from beam to beam.
 		struct Ahead
 		{
-			double nearness;
-			unsigned int place; ///< in `nodes`, or in the order of the leaves
-			bool isBox;
-			bool operator<(const Ahead& other) const { return nearness < other.nearness; }
+			unsigned int node;
+			ShadowRect rect; ///< that the beam sees of it
 		};
-		typedef std::vector<Ahead> Heap;
+		typedef std::vector<Ahead> Path;
 
-		/// The boxes in a beam, nearest first. The beam's rays may be shortened on the way.
+		/// The boxes in a beam, nodes nearest first. The beam's rays may be shortened on the way.
 		class Sweep
 		{
 			public:
 				/// @param[in]      budget      the sweep gives up after so many nodes and boxes
-				Sweep(const ShadowTree& tree, const ShadowBeam& beam, Heap& heap, size_t budget);
+				Sweep(const ShadowTree& tree, const ShadowBeam& beam, Path& path, size_t budget);
 
-				/// The next box that may be seen.
-				/// @param[out]     place       of the box in the tree
+				/// The next boxes that may be seen.
+				/// @param[out]     first, end  places of the boxes in the tree, without the last
 				/// @return                     false when there is none left, or the budget is spent
-				bool Next(unsigned int& place);
+				bool Next(unsigned int& first, unsigned int& end);
 
 				bool GaveUp() const { return budget == 0; }
 			private:
 				const ShadowTree& tree;
 				const ShadowBeam& beam;
-				Heap& heap;
+				Path& path;
 				size_t budget;
 
-				void Push(const Slabs& slabs, unsigned int place, bool isBox);
+				void Push(const Ahead& ahead);
 		};
 
 		/// The box at a place of the tree. Places that are neighbours lie close together.
@@ -112,15 +111,9 @@ class ShadowTree
 			unsigned int count; ///< 0: an inner node
 		};
 
-		const std::vector<dsm_box>& boxes;
 		std::vector<Node> nodes;
 		std::vector<unsigned int> order; ///< boxes in the order of the leaves
 		std::vector<Slabs> leaves;       ///< in that order
-
-		static Slabs Round(const dsm_box& box);
-
-		void Build(unsigned int node, unsigned int first, unsigned int count);
-		unsigned int Split(const dsm_box& centres, unsigned int first, unsigned int count);
 };
 
 inline ShadowTree::Line::Line(const dsm_ray& r) : ray(r)
