@@ -74,7 +74,7 @@ void Quarters(double a, double b, double slopeA, double slopeB, double out[5])
 
 }
 
-ShadowMedia::ShadowMedia(TraceThreadData *td) : thread(td), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0)
+ShadowMedia::ShadowMedia(TraceThreadData *td) : thread(td), grey(true), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0)
 {
 }
 
@@ -83,6 +83,7 @@ void ShadowMedia::Clear()
 	media.clear();
 	mapped.clear();
 	others.clear();
+	grey = true;
 }
 
 void ShadowMedia::Add(const ShadowMedium& medium)
@@ -92,6 +93,7 @@ void ShadowMedia::Add(const ShadowMedium& medium)
 		mapped.push_back(&medium);
 	else
 		others.push_back(&medium);
+	grey = grey && others.empty() && medium.Mapped()->Transfer().Grey() && (Least(medium.Scale()) == Largest(medium.Scale()));
 }
 
 double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, double visible, double wanted, Sink& sink)
@@ -131,7 +133,10 @@ double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, doubl
 			Run(dark);
 	}
 
-	Emit(tolerance, sink);
+	if(grey)
+		Emit<1>(tolerance, sink);
+	else
+		Emit<3>(tolerance, sink);
 	return points.back().visible;
 }
 
@@ -300,7 +305,8 @@ void ShadowMedia::Run(double dark)
 			Know(ahead[next - 1]);
 
 		const double from = passed[last].depth, to = ahead[next].depth, middle = 0.5 * (from + to);
-		const double bend = Bend((last > 0) ? &passed[last - 1] : NULL, passed[last], ahead[next], (next > 0) ? &ahead[next - 1] : NULL, halves);
+		const Sample *before = (last > 0) ? &passed[last - 1] : NULL, *after = (next > 0) ? &ahead[next - 1] : NULL;
+		const double bend = grey ? Bend<1>(before, passed[last], ahead[next], after, halves) : Bend<3>(before, passed[last], ahead[next], after, halves);
 		if((bend * points.back().visible <= allowedInRun) || (to - from <= shortest))
 		{
 			Advance(middle, halves[0]);
@@ -330,12 +336,13 @@ void ShadowMedia::Run(double dark)
 /// the way count one by one: where the density jumps, only they tell.
 /// @param[in]      before,after    the outer samples, or NULL
 /// @param[out]     halves          optical depth of both halves of the way, along the cubic
+template<int kChannels>
 double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample& to, const Sample *after, DblRGBColour halves[2]) const
 {
 	const double length = to.depth - from.depth;
 	const double lengthBefore = (before != NULL) ? from.depth - before->depth : 0.0;
 	const double lengthAfter = (after != NULL) ? after->depth - to.depth : 0.0;
-	DblRGBColour curved[4], straight[4];
+	double curved[4][3] = { { 0.0 } }, straight[4][3] = { { 0.0 } };
 
 	for(size_t i = 0; i < mapped.size(); i++)
 	{
@@ -343,19 +350,21 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 		const double slopeA = (before != NULL) ? Slope(before->value[i], a, b, lengthBefore, length, length) : b - a;
 		const double slopeB = (after != NULL) ? Slope(a, b, after->value[i], length, lengthAfter, length) : b - a;
 		const double line[5] = { a, 0.75 * a + 0.25 * b, 0.5 * (a + b), 0.25 * a + 0.75 * b, b };
-		double cubic[5];
-		DblRGBColour means[4];
+		const DblRGBColour& scale = mapped[i]->Scale();
+		double cubic[5], means[4][3];
 
 		Quarters(a, b, slopeA, slopeB, cubic);
-		mapped[i]->Mapped()->Transfer().Means(cubic, 4, means);
+		mapped[i]->Mapped()->Transfer().Means<kChannels>(cubic, 4, means);
 		for(int q = 0; q < 4; q++)
-			curved[q] += means[q] * mapped[i]->Scale();
-		mapped[i]->Mapped()->Transfer().Means(line, 4, means);
+			for(int k = 0; k < kChannels; k++)
+				curved[q][k] += means[q][k] * scale[k];
+		mapped[i]->Mapped()->Transfer().Means<kChannels>(line, 4, means);
 		for(int q = 0; q < 4; q++)
-			straight[q] += means[q] * mapped[i]->Scale();
+			for(int k = 0; k < kChannels; k++)
+				straight[q][k] += means[q][k] * scale[k];
 	}
 
-	for(int k = 0; (k < 3) && !others.empty(); k++)
+	for(int k = 0; (k < kChannels) && !others.empty(); k++)
 	{
 		const double a = from.other[k], b = to.other[k];
 		const double slopeA = (before != NULL) ? Slope(before->other[k], a, b, lengthBefore, length, length) : b - a;
@@ -371,15 +380,19 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 	}
 
 	double bend = 0.0;
-	for(int k = 0; k < 3; k++)
+	for(int k = 0; k < kChannels; k++)
 	{
 		double sum = 0.0;
 		for(int q = 0; q < 4; q++)
 			sum += fabs(curved[q][k] - straight[q][k]);
 		bend = max(bend, sum);
 	}
-	halves[0] = (curved[0] + curved[1]) * (0.25 * length);
-	halves[1] = (curved[2] + curved[3]) * (0.25 * length);
+	for(int k = 0; k < 3; k++)
+	{
+		const int channel = (kChannels == 1) ? 0 : k;
+		halves[0][k] = (curved[0][channel] + curved[1][channel]) * (0.25 * length);
+		halves[1][k] = (curved[2][channel] + curved[3][channel]) * (0.25 * length);
+	}
 	return bend * 0.25 * length;
 }
 
@@ -397,6 +410,7 @@ void ShadowMedia::Advance(double depth, const DblRGBColour& thickness)
 
 /// Hands on the fewest spans, each as long as light within it keeps to the exponential. Spans end on points, where light
 /// is known, so that their errors do not add up.
+template<int kChannels>
 void ShadowMedia::Emit(double tolerance, Sink& sink) const
 {
 	size_t first = 0;
@@ -419,12 +433,13 @@ void ShadowMedia::Emit(double tolerance, Sink& sink) const
 				last = i;
 				continue;
 			}
-			for(int k = 0; k < 3; k++)
+			const double perLength = 1.0 / length;
+			for(int k = 0; k < kChannels; k++)
 			{
 				const double thickness = points[i].thickness[k] - from.thickness[k];
 				fits = fits && (thickness >= low[k] * length) && (thickness <= high[k] * length);
-				low[k] = max(low[k], (thickness - slack) / length);
-				high[k] = min(high[k], (thickness + slack) / length);
+				low[k] = max(low[k], (thickness - slack) * perLength);
+				high[k] = min(high[k], (thickness + slack) * perLength);
 				open = open && (low[k] <= high[k]);
 			}
 			if(fits)
@@ -433,7 +448,12 @@ void ShadowMedia::Emit(double tolerance, Sink& sink) const
 
 		const DblRGBColour thickness(points[last].thickness - from.thickness);
 		if(Largest(thickness) * from.visible > kNothing)
-			sink.Span(from.depth, points[last].depth, DblRGBColour(exp(-thickness.red()), exp(-thickness.green()), exp(-thickness.blue())));
+		{
+			DblRGBColour transmittance(exp(-thickness.red()));
+			for(int k = 1; k < kChannels; k++)
+				transmittance[k] = exp(-thickness[k]);
+			sink.Span(from.depth, points[last].depth, transmittance);
+		}
 		first = last;
 	}
 }

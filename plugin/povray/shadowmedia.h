@@ -81,6 +81,7 @@ class ShadowMedia
 		TraceThreadData *thread;
 		vector<const ShadowMedium *> media;
 		vector<const ShadowMedium *> mapped, others; ///< the same media, by how they are sampled
+		bool grey;                    ///< all of them: one channel tells
 
 		// of the integral under way
 		const dsm_ray *ray;
@@ -102,9 +103,10 @@ class ShadowMedia
 		void Plan(double depth, double step, bool forced);
 		void Know(Sample& sample) const;
 		void Run(double dark);
+		template<int kChannels>
 		double Bend(const Sample *before, const Sample& from, const Sample& to, const Sample *after, DblRGBColour halves[2]) const;
 		void Advance(double depth, const DblRGBColour& thickness);
-		void Emit(double tolerance, Sink& sink) const;
+		template<int kChannels> void Emit(double tolerance, Sink& sink) const;
 };
 
 }

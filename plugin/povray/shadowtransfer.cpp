@@ -24,6 +24,7 @@ const double kSameValue = 1.0e-7;
 bool ShadowTransfer::Read(const BLEND_MAP *map)
 {
 	entries.clear();
+	grey = true;
 	if((map == NULL) || (map->Number_Of_Entries < 1))
 		return false;
 
@@ -45,12 +46,15 @@ bool ShadowTransfer::Read(const BLEND_MAP *map)
 		else
 			return false;
 
+		grey = grey && (entry.colour.red() == entry.colour.green()) && (entry.colour.red() == entry.colour.blue());
 		if(!entries.empty())
 		{
-			const Entry& last = entries.back();
+			Entry& last = entries.back();
 			if(!(entry.value >= last.value))
 				return false;
 			entry.integral = last.integral + (last.colour + entry.colour) * (0.5 * (entry.value - last.value));
+			if(entry.value > last.value)
+				last.slope = (entry.colour - last.colour) * (1.0 / (entry.value - last.value));
 		}
 		entries.push_back(entry);
 	}
@@ -71,32 +75,57 @@ DblRGBColour ShadowTransfer::At(double value) const
 	return last.colour + (next->colour - last.colour) * ((value - last.value) / (next->value - last.value));
 }
 
-DblRGBColour ShadowTransfer::Integral(double value) const
+/// The last entry that is not above a value, or -1. Looks near `from` first: the next value is seldom far.
+inline int ShadowTransfer::Find(double value, int from) const
 {
-	const vector<Entry>::const_iterator next = std::lower_bound(entries.begin(), entries.end(), value);
+	const int count = entries.size();
 
-	if(next == entries.begin())
-		return next->colour * (value - next->value);
-
-	const Entry& last = *(next - 1);
-	if(next == entries.end())
-		return last.integral + last.colour * (value - last.value);
-	return last.integral + (last.colour + At(value)) * (0.5 * (value - last.value));
+	while((from >= 0) && (value < entries[from].value))
+		from--;
+	while((from + 1 < count) && (value >= entries[from + 1].value))
+		from++;
+	return from;
 }
 
-void ShadowTransfer::Means(const double *values, int count, DblRGBColour *means) const
+inline double ShadowTransfer::Integral(int entry, double value, int channel) const
 {
-	DblRGBColour last(Integral(values[0]));
+	if(entry < 0)
+		return entries[0].colour[channel] * (value - entries[0].value);
+
+	const Entry& from = entries[entry];
+	const double beyond = value - from.value;
+	return from.integral[channel] + beyond * (from.colour[channel] + 0.5 * beyond * from.slope[channel]);
+}
+
+template<int kChannels> void ShadowTransfer::Means(const double *values, int count, double (*means)[3]) const
+{
+	int last = Find(values[0], 0);
 
 	for(int i = 0; i < count; i++)
 	{
-		const double difference = values[i + 1] - values[i];
-		const DblRGBColour next(Integral(values[i + 1]));
+		const double difference = values[i + 1] - values[i], middle = 0.5 * (values[i] + values[i + 1]);
+		const int next = Find(values[i + 1], last);
 
-		means[i] = (fabs(difference) < kSameValue) ? At(0.5 * (values[i] + values[i + 1])) : (next - last) * (1.0 / difference);
+		if((next == last) || (fabs(difference) < kSameValue)) // on a straight line, or as good as
+		{
+			const int at = Find(middle, next);
+			const Entry& entry = entries[max(at, 0)];
+			const double beyond = (at < 0) ? 0.0 : middle - entry.value;
+			for(int k = 0; k < kChannels; k++)
+				means[i][k] = entry.colour[k] + beyond * entry.slope[k];
+		}
+		else
+		{
+			const double scale = 1.0 / difference;
+			for(int k = 0; k < kChannels; k++)
+				means[i][k] = (Integral(next, values[i + 1], k) - Integral(last, values[i], k)) * scale;
+		}
 		last = next;
 	}
 }
+
+template void ShadowTransfer::Means<1>(const double *values, int count, double (*means)[3]) const;
+template void ShadowTransfer::Means<3>(const double *values, int count, double (*means)[3]) const;
 
 void ShadowTransfer::Range(double low, double high, DblRGBColour& least, DblRGBColour& most) const
 {

@@ -19,8 +19,12 @@ class ShadowTransfer
 		bool Read(const BLEND_MAP *map);
 
 		DblRGBColour At(double value) const;
+		/// Whether all channels are the same.
+		bool Grey() const { return grey; }
+
 		/// The mean over all values between two neighbours, for `count` pairs: means[i] is of values[i] and values[i + 1].
-		void Means(const double *values, int count, DblRGBColour *means) const;
+		/// Of the first `kChannels` channels: one is enough for grey.
+		template<int kChannels> void Means(const double *values, int count, double (*means)[3]) const;
 		/// The least and the most of each channel over all values from `low` to `high`.
 		void Range(double low, double high, DblRGBColour& least, DblRGBColour& most) const;
 
@@ -33,11 +37,14 @@ class ShadowTransfer
 			double value;
 			DblRGBColour colour;
 			DblRGBColour integral; ///< from the first entry's value to this one's
+			DblRGBColour slope;    ///< from here to the next entry; of the last one 0
 			bool operator<(double v) const { return value < v; }
 		};
 		vector<Entry> entries;
+		bool grey;
 
-		DblRGBColour Integral(double value) const;
+		int Find(double value, int from) const;
+		double Integral(int entry, double value, int channel) const;
 };
 
 }
