@@ -182,29 +182,34 @@ void ShadowTree::Builder::Build(unsigned int node, const Part& part)
 	Build(children + 1, right);
 }
 
-/// The split after which a ray meets the fewest boxes.
+/// The split after which a ray meets the fewest boxes. Larger parts are split along their widest side: the other two would
+/// better the tree by a few parts in a hundred, and cost a third of the time.
 /// @return     false if all centres are in one bin
 bool ShadowTree::Builder::Cheapest(const Part& part, const Bins& bins, int& bestAxis, int& bestBin) const
 {
+	const Lanes width = part.centres.high - part.centres.low;
+	const int widest = (width[0] > width[1]) ? ((width[0] > width[2]) ? 0 : 2) : ((width[1] > width[2]) ? 1 : 2);
+	const bool few = (part.count < kFewItems);
+	const int firstAxis = few ? 0 : widest, lastAxis = few ? 2 : widest;
 	unsigned int counts[3][kMostBins] = { { 0 } };
 	Item boxes[3][kMostBins];
 	float best = HUGE_VALF;
 
-	for(int axis = 0; axis < 3; axis++)
+	for(int axis = firstAxis; axis <= lastAxis; axis++)
 		for(int bin = 0; bin < bins.count; bin++)
 			boxes[axis][bin].Clear();
 	for(unsigned int i = part.first; i < part.first + part.count; i++)
 	{
 		const Item item(items[i]);
 		const IntLanes bin(bins.Of(item));
-		for(int axis = 0; axis < 3; axis++)
+		for(int axis = firstAxis; axis <= lastAxis; axis++)
 		{
 			boxes[axis][bin[axis]].Include(item);
 			counts[axis][bin[axis]]++;
 		}
 	}
 
-	for(int axis = 0; axis < 3; axis++)
+	for(int axis = firstAxis; axis <= lastAxis; axis++)
 	{
 		float rightCost[kMostBins];
 		unsigned int number = 0;
