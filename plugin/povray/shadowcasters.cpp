@@ -89,7 +89,7 @@ struct LargerFirst
 
 }
 
-ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : hasVolumes(false), hasUnmappedVolumes(false)
+ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : planted(BOOST_ONCE_INIT), hasVolumes(false), hasUnmappedVolumes(false)
 {
 	for(vector<ObjectPtr>::const_iterator i(scene.begin()); i != scene.end(); i++)
 	{
@@ -118,16 +118,14 @@ ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : hasVolumes(false)
 		}
 	for(vector<ObjectPtr>::const_iterator i(unmapped.begin()); i != unmapped.end(); i++)
 		hasUnmappedVolumes = hasUnmappedVolumes || HasVolume(*i);
-
-	tree.reset(new ShadowTree(boxes));
-	Sketch();
 }
 
-/// In the order of the tree: what is looked at together lies together.
-void ShadowCasters::Sketch()
+/// What is kept of each object is in the order of the tree: what is looked at together lies together.
+void ShadowCasters::MakeTree() const
 {
 	ShadowRod rod;
 
+	tree.reset(new ShadowTree(boxes));
 	for(unsigned int place = 0; place < tree->Places(); place++)
 	{
 		shapes.push_back(ShadowShapeOf(objects[tree->Box(place)], rod));

@@ -5,7 +5,9 @@
 #ifndef POVRAY_BACKEND_SHADOWCASTERS_H
 #define POVRAY_BACKEND_SHADOWCASTERS_H
 
+#include <boost/bind.hpp>
 #include <boost/scoped_ptr.hpp>
+#include <boost/thread/once.hpp>
 
 #include "backend/shadow/shadowtree.h"
 #include "backend/shadow/shadowvolumes.h"
@@ -36,6 +38,9 @@ class ShadowCasters
 		/// Objects whose inside holds the point.
 		void Containing(const Vector3d& point, TraceThreadData *thread, vector<ObjectPtr>& out) const;
 
+		/// Makes the tree, if nobody has. Before the first light ray: where no map is baked, nobody pays for it.
+		void PlantTree() const { boost::call_once(planted, boost::bind(&ShadowCasters::MakeTree, this)); }
+
 		/// The boxes as a tree, and the object that a box of the tree belongs to.
 		const ShadowTree& Tree() const { return *tree; }
 		ObjectPtr Object(unsigned int box) const { return objects[box]; }
@@ -49,15 +54,16 @@ class ShadowCasters
 	private:
 		vector<ObjectPtr> objects;    ///< parallel to boxes
 		vector<dsm_box> boxes;
-		vector<unsigned char> shapes; ///< ShadowShape, by place in the tree
-		vector<ShadowRod> rods;       ///< empty if there is none; else parallel to shapes
+		mutable boost::once_flag planted;
+		mutable vector<unsigned char> shapes; ///< ShadowShape, by place in the tree
+		mutable vector<ShadowRod> rods;       ///< empty if there is none; else parallel to shapes
 		vector<ObjectPtr> unmapped;
-		boost::scoped_ptr<ShadowTree> tree;
+		mutable boost::scoped_ptr<ShadowTree> tree;
 		bool hasVolumes, hasUnmappedVolumes;
 		ShadowVolumes volumes;
 
 		void SplitOffOutsized();
-		void Sketch();
+		void MakeTree() const;
 };
 
 }

@@ -144,6 +144,7 @@ dsm_result ShadowContext::Trace(void *data, const dsm_ray *rays, uint32_t count,
 
 	try
 	{
+		self.maps.Casters().PlantTree();
 		return self.events.TraceRays(*self.maps[worker.map].light, rays, count, tolerance, sink);
 	}
 	catch(...)

@@ -250,6 +250,18 @@ bool ShadowMaps::HasUndecided() const
 	return false;
 }
 
+string ShadowMaps::Times(double cost)
+{
+	const double kMost = 100.0;
+	std::ostringstream text;
+
+	if(cost >= kMost)
+		text << "more than " << kMost;
+	else
+		text << "about " << std::setprecision(2) << cost;
+	return text.str();
+}
+
 /// Lights are told apart by their order in the scene: they have no names.
 string ShadowMaps::Name(const LightSource& light) const
 {
@@ -274,9 +286,9 @@ void ShadowMaps::Decide(size_t map, bool useMap, double cost)
 	rayTracedLights++;
 	sentence << "The shadows of " << Name(*entry.light) << " are ray-traced: ";
 	if(cost > 0.0)
-		sentence << "its map would cost about " << std::setprecision(2) << cost << " times as much.";
+		sentence << "a map would cost " << Times(cost) << " times as much.";
 	else
-		sentence << "hardly any are asked for.";
+		sentence << "they are too few for a map.";
 	Tell(1, sentence.str());
 }
 

@@ -111,6 +111,7 @@ class ShadowMaps
 
 		size_t Add(const LightSource& light, int method);
 		string Name(const LightSource& light) const;
+		static string Times(double cost);
 		bool CanHaveMap(const LightSource& light) const;
 		bool Create(const LightSource& light, const ShadowSettings& settings);
 		void Tell(int severity, const string& sentence) const;

@@ -82,7 +82,7 @@ string ShadowMaps::Choices() const
 		text << std::left << std::setw(21) << ((told++ == 0) ? "Shadows by map/rays:" : "") << Name(*map.light)
 		     << ((map.choice == ShadowMap::kMap) ? ": map" : ": rays");
 		if(map.cost > 0.0)
-			text << ", map's cost is " << std::setprecision(2) << map.cost << " of theirs";
+			text << ", a map costs " << Times(map.cost) << " times the rays";
 		text << "\n";
 	}
 	if(more > 0)

@@ -34,6 +34,9 @@ const double kFirstConfidence = 4.0;
 /// Tiles that are baked to learn what they cost.
 const unsigned int kMostBaked = 8;
 
+/// Of the rays' work, what baking tiles may cost: it is lost where rays are chosen.
+const double kBakeShare = 0.02;
+
 /// Pixels at edges, of those that antialiasing looks at.
 const double kEdges = 0.15;
 
@@ -188,21 +191,19 @@ void ShadowSurveyTask::Judge(size_t map, unsigned int taken, double confidence)
 		return;
 	}
 
-	// first with the least that a tile can cost, then with what a few have cost
-	const double rays = tally.RaysWork(scale);
-	for(unsigned int bake = 1; tally.MapWork(scale, tiles) <= confidence * rays; bake *= kMostBaked)
-	{
-		if(tally.Baked() < bake)
-			Bake(map, bake);
-		if(bake >= kMostBaked)
-			break;
-	}
+	// a guess is low: first one tile has to be baked to believe that the map costs less, then a few, where that is cheap
+	const double rays = tally.RaysWork(scale), affordable = kBakeShare * rays;
+	if((tally.Baked() == 0) && (tally.MapWork(scale, tiles) <= rays) && (tally.TileWork() <= affordable))
+		Bake(map, 1);
+	if((tally.Baked() > 0) && (tally.MapWork(scale, tiles) <= 2.0 * rays) && (tally.TileWork() * kMostBaked <= affordable))
+		Bake(map, kMostBaked);
 
-	const double ratio = tally.MapWork(scale, tiles) / rays;
-	if((ratio > confidence) || last)
-		maps.Decide(map, ratio <= 1.0, ratio);
-	else if(ratio * confidence <= 1.0)
-		maps.Decide(map, true, ratio);
+	const double cost = tally.MapWork(scale, tiles);
+	const bool known = (tally.Baked() > 0);
+	if((cost > confidence * rays) || (last && !(known && (cost <= rays))))
+		maps.Decide(map, false, (cost > rays) ? cost / rays : 0.0);
+	else if(known && (cost * confidence <= rays))
+		maps.Decide(map, true, cost / rays);
 }
 
 }

@@ -19,6 +19,9 @@ namespace
 /// Tiles that were wanted by more samples than this are all alike to the estimate.
 const unsigned int kOften = 3;
 
+/// Light rays of a tile, and what each takes at least of a shadow ray's work.
+const double kTileRays = 4096.0, kLeastShare = 0.1;
+
 /// Tiles are picked from all over the map: this share of the wanted ones further on each time, the golden section's.
 const double kPickStep = 0.6180339887498949;
 
@@ -93,11 +96,16 @@ double ShadowTally::Tiles(double frameTiles) const
 	return min(frameTiles, finest.size() + once * (once - 1.0) / (2.0 * (twice + 1.0)));
 }
 
+double ShadowTally::TileWork() const
+{
+	if(baked > 0)
+		return bakeWork / baked;
+	return kShadowLeastTileWork + ((requests > 0) ? kTileRays * kLeastShare * rays / requests : 0.0);
+}
+
 double ShadowTally::MapWork(double scale, double frameTiles) const
 {
-	const double tile = (baked > 0) ? bakeWork / baked : kShadowLeastTileWork;
-
-	return (requests * kShadowLookUpWork + rest) * scale + Tiles(frameTiles) * tile;
+	return (requests * kShadowLookUpWork + rest) * scale + Tiles(frameTiles) * TileWork();
 }
 
 }

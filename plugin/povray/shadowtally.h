@@ -43,6 +43,8 @@ class ShadowTally
 		double RaysWork(double scale) const { return rays * scale; }
 		/// @param[in]      frameTiles  the finest tiles that there are
 		double MapWork(double scale, double frameTiles) const;
+		/// Of one tile: what those that were baked have cost, or else a guess that is low.
+		double TileWork() const;
 	private:
 		/// Finest tile, or tile of a coarser level.
 		struct Key

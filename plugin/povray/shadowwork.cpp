@@ -49,11 +49,11 @@ double ShadowWorkOf(const RenderStatistics& stats)
 {
 	double work = 0.0;
 
-	// tests and successes take turns
+	// tests and successes take turns; isosurfaces take back tests of their containers, and sometimes more than there were
 	for(int i = Ray_RBezier_Tests; i <= Ray_TTF_Tests; i += 2)
-		work += kShapeTest * stats[IntStatsIndex(i)];
+		work += kShapeTest * POV_LONG(stats[IntStatsIndex(i)]);
 	for(size_t i = 0; i < sizeof(kBeyondShapeTest) / sizeof(kBeyondShapeTest[0]); i++)
-		work += kBeyondShapeTest[i].work * stats[kBeyondShapeTest[i].counter];
+		work += kBeyondShapeTest[i].work * POV_LONG(stats[kBeyondShapeTest[i].counter]);
 	return work;
 }
 
