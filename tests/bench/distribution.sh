@@ -6,7 +6,8 @@
 #   tests/bench/distribution.sh deep [FOLDER...]        Shadow_Method=deep against raytraced: error and seconds, a line a scene
 #   tests/bench/distribution.sh cost [FOLDER...]        the same, each light with its map or ray-traced as the program itself
 #                                                       chooses: user and system seconds of the whole program, medians of RUNS
-#                                                       (default 3) taken in turns, their ratio, and what was chosen
+#                                                       (default 3) taken in turns, their ratio, and what was chosen;
+#                                                       MOST=5 SIZE="+W160 +H120" takes ten minutes
 #
 # Folders are those below scenes/ of the distribution; none: all. A scene that gives no picture in LIMIT seconds (default 60)
 # in either program fails, but for those that stock itself cannot render alone. Pictures stay in build/distribution/.
@@ -16,6 +17,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 what=${1:?identical, deep or cost}
 shift
 : "${LIMIT:=60}" "${MOST:=1000}" "${SIZE:=+W120 +H90}" "${OPTIONS:=}" "${RUNS:=3}"
+unset DEEP_SHADOW_CHOICE
 if [ "$what" = deep ]; then export DEEP_SHADOW_CHOICE=map; fi
 : "${SHADOW_ERROR:=$top/tests/image/shadow_error}"
 : "${POVRAY:=$top/build/bin/povray}" "${STOCK:=$top/build/stock/bin/povray}"
