@@ -178,6 +178,12 @@ typedef struct {
   uint64_t samples;        /* depth maps: compared by all look-ups; zero for others */
 } dsm_statistics;
 
+/* A square of a face's finest tiles, (x, y) to (past_x - 1, past_y - 1), of which one tile of `level` is made. */
+typedef struct {
+  uint32_t face, level;
+  uint32_t x, y, past_x, past_y;
+} dsm_tiles;
+
 typedef struct {
   uint32_t abi;    /* DSM_ABI */
   uint32_t size;   /* of this table, in bytes */
@@ -240,6 +246,13 @@ typedef struct {
   dsm_result (*sink_span)(dsm_sink *sink, uint32_t ray, double front, double back, const double transmittance[3]);
   /* The ray's light can grow with depth (caustics, colours above 1). The map does not store such pixels. */
   dsm_result (*sink_mark)(dsm_sink *sink, uint32_t ray);
+
+  /* What a map will cost can be told before it is used. Tells `wanted` of the tiles that a look-up for this receiver would make,
+   * each once or more often, and makes none. */
+  dsm_result (*tiles_wanted)(dsm_worker *worker, const dsm_receiver *receiver,
+                             void (*wanted)(void *data, const dsm_tiles *tiles), void *data);   /* [one] */
+  /* Makes one of the finest tiles, as a look-up would. */
+  dsm_result (*bake_tile)(dsm_worker *worker, uint32_t face, uint32_t x, uint32_t y);           /* [one] */
 } dsm_api_table;
 
 /* The one exported symbol. */

@@ -5,6 +5,7 @@
 #include "core/settings.h"
 #include "map/lookup.h"
 #include "map/map.h"
+#include "map/wanted_tiles.h"
 #include "map/whole_map.h"
 #include "map/worker.h"
 #include "store/saved_map.h"
@@ -37,4 +38,6 @@ const dsm_api_table dsm_api = {
   .sink_surface = sink_surface,
   .sink_span = sink_span,
   .sink_mark = sink_mark,
+  .tiles_wanted = map_tiles_wanted,
+  .bake_tile = map_bake_tile,
 };

@@ -6,6 +6,7 @@
 # Environment: POVRAY (build/bin/povray), SHADOW_ERROR (tests/image/shadow_error), DEMO_WIDTH (640), DEMO_HEIGHT (480),
 # DEMO_HAIRS (50000), DEMO_THREADS (all processors), DEMO_DIR (build/demo), DEMO_OPTIONS (more options for POV-Ray).
 set -eu
+export DEEP_SHADOW_CHOICE=map  # what is shown are maps
 
 here=$(cd "$(dirname "$0")" && pwd)
 povray=${POVRAY:-build/bin/povray}

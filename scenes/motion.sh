@@ -6,6 +6,7 @@
 # Environment: POVRAY (build/bin/povray), DSMTOOL (build/bin/dsmtool), MOTION_DIR (build/motion), MOTION_WIDTH (640),
 # MOTION_HEIGHT (480), MOTION_INSTANTS (32), MOTION_THREADS (all processors).
 set -eu
+export DEEP_SHADOW_CHOICE=map  # what is shown are maps
 
 here=$(cd "$(dirname "$0")" && pwd)
 povray=$(realpath "${POVRAY:-build/bin/povray}")

@@ -90,9 +90,39 @@ static int clipped_area(const point3 corner[8], const rectangle *w, rectangle *a
   return seen;
 }
 
+/* Whether a box lies wholly, and not just by rounding, on the far side of the plane through the origin with the normal
+ * a * across + b * axes->forward. */
+static int is_beyond(const double centre[3], const double half[3], const frame *axes, const double across[3], double a,
+                     double b)
+{
+  double middle = 0, reach = 0, size = 0;
+  for (int i = 0; i < 3; i++) {
+    double n = a * across[i] + b * axes->forward[i];
+    middle += n * centre[i];
+    reach += fabs(n) * half[i];
+    size += fabs(n * centre[i]);
+  }
+  return middle + reach < -1e-12 * (size + reach);
+}
+
+/* Sees at a glance most boxes that the pyramid misses: a cube's faces each miss most of the scene. */
+static int is_clearly_missed(const double origin[3], const frame *axes, const rectangle *w, const dsm_box *box)
+{
+  double centre[3], half[3];
+  for (int i = 0; i < 3; i++) {
+    centre[i] = 0.5 * (box->low[i] + box->high[i]) - origin[i];
+    half[i] = 0.5 * (box->high[i] - box->low[i]);
+  }
+  return is_beyond(centre, half, axes, axes->right, 0, 1) || is_beyond(centre, half, axes, axes->right, 1, -w->u0)
+         || is_beyond(centre, half, axes, axes->right, -1, w->u1) || is_beyond(centre, half, axes, axes->up, 1, -w->v0)
+         || is_beyond(centre, half, axes, axes->up, -1, w->v1);
+}
+
 static void add_perspective(outline *sum, const double origin[3], const frame *axes, const rectangle *w,
                             const dsm_box *box)
 {
+  if (is_clearly_missed(origin, axes, w, box))
+    return;
   point3 corner[8];
   int inside = 1, behind = 1;
   int missed[4] = {1, 1, 1, 1};   /* all corners beyond one side of the pyramid */

@@ -98,6 +98,11 @@ dsm_result worker_need_tile(dsm_worker *worker, const tile_key *key, const tile 
 {
   dsm_map *map = worker->map;
   *out = NULL;
+  if (worker->wish) {
+    worker->wish->tell(worker->wish, key);
+    *out = &tile_lit;
+    return DSM_OK;
+  }
   if (worker->baking)
     return DSM_TRACE;
   tile_claim claim;

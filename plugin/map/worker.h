@@ -13,6 +13,11 @@ typedef struct tile_maker {
   void (*destroy)(struct tile_maker *maker);
 } tile_maker;
 
+/* Is told of tiles that are not there, while a look-up takes them for lit: see wanted_tiles.h. */
+typedef struct tile_wish {
+  void (*tell)(struct tile_wish *wish, const tile_key *key);
+} tile_wish;
+
 /* Where the last search in a pixel ended (LV 3.4). A direct-mapped cache without tags: pixels 32 apart share
  * a place, and a wrong hint only costs its search some steps. */
 #define HINT_SIDE 32
@@ -24,6 +29,7 @@ struct dsm_worker {
   tile_holder holder;
   uint32_t depth;      /* of worker_enter */
   int baking;          /* a host must not look up with a worker whose tile it traces; it is told to trace */
+  tile_wish *wish;     /* NULL but within map_tiles_wanted */
   uint32_t hints[HINT_SIDE * HINT_SIDE];
   struct dsm_worker *next;   /* of the map's; under store.mutex */
   _Atomic uint64_t samples;  /* written by its thread alone; see dsm_statistics */

@@ -9,6 +9,7 @@
 #include "backend/support/task.h"
 #include "backend/shadow/shadowcontext.h"
 #include "backend/shadow/shadowmaps.h"
+#include "backend/shadow/shadowwork.h"
 
 // this must be the last file included
 #include "base/povdebug.h"
@@ -20,6 +21,7 @@ using namespace pov_base;
 
 ShadowContext::ShadowContext(ShadowMaps& m, ViewData *viewData, ViewThreadData *threadData) :
 	maps(m),
+	thread(threadData),
 	events(viewData->GetSceneData(), threadData, viewData->GetQualityFeatureFlags(), m.Casters()),
 	workers(m.Count()),
 	inFile(false)
@@ -54,6 +56,30 @@ dsm_result ShadowContext::LookUp(size_t map, const dsm_receiver& receiver, doubl
 	if(result == DSM_NO_MEMORY)
 		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
 	return DSM_TRACE;
+}
+
+void ShadowContext::TilesWanted(size_t map, const dsm_receiver& receiver, void (*wanted)(void *data, const dsm_tiles *tiles), void *data)
+{
+	if(ShadowPlugin::Api().tiles_wanted(workers[map].worker, &receiver, wanted, data) == DSM_NO_MEMORY)
+		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+}
+
+void ShadowContext::BakeTile(size_t map, const dsm_tiles& tile)
+{
+	const dsm_result result = ShadowPlugin::Api().bake_tile(workers[map].worker, tile.face, tile.x, tile.y);
+
+	PassOnFailure();
+	if(result == DSM_NO_MEMORY)
+		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+}
+
+double ShadowContext::BakeWork(size_t map) const
+{
+	dsm_statistics s = { 0 };
+
+	s.size = sizeof(s);
+	ShadowPlugin::Api().statistics(maps[map].map.get(), &s);
+	return ShadowWorkOf(thread->Stats()) + ShadowWorkOf(events) + ShadowWorkOf(s);
 }
 
 void ShadowContext::Load(size_t map, const string& path)

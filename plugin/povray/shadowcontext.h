@@ -34,6 +34,13 @@ class ShadowContext
 		/// @return                     false when there was no tile left to bake
 		bool BakeNext(size_t map, double& share);
 
+		/// What a look-up would need, and one tile of it. See dsm.h.
+		void TilesWanted(size_t map, const dsm_receiver& receiver, void (*wanted)(void *data, const dsm_tiles *tiles), void *data);
+		void BakeTile(size_t map, const dsm_tiles& tile);
+
+		/// What baking a map has cost; all of it while this is the only context that bakes.
+		double BakeWork(size_t map) const;
+
 		/// An error that the library reports in this thread.
 		/// @return                     false if nobody here would pass it on
 		bool Complain(const char *sentence);
@@ -60,6 +67,7 @@ class ShadowContext
 		};
 
 		ShadowMaps& maps;
+		TraceThreadData *thread;
 		ShadowEvents events;
 		vector<Worker> workers;
 		std::exception_ptr failure; ///< no exception may cross the library, so it waits here

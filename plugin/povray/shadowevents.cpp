@@ -37,6 +37,7 @@ ShadowEvents::ShadowEvents(shared_ptr<SceneData> scene, TraceThreadData *thread,
 	Trace(scene, thread, quality & ~Q_VOLUME, noCooperate, noMedia, noRadiosity),
 	casters(c),
 	volumes((quality & Q_VOLUME) != 0),
+	shaded(0),
 	containersOf(NULL),
 	hits(c, thread),
 	shade(Ray::OtherRay, true),
@@ -118,6 +119,7 @@ RGBColour ShadowEvents::ShadeSurface(const LightSource& light, const dsm_ray& ra
 		shade.Origin[i] = isect.IPoint[i] + ray.direction[i];
 		shade.Direction[i] = -ray.direction[i];
 	}
+	shaded++;
 	shade.ClearInteriors(); // so neither fading nor media come in
 	isect.Depth = 1.0;
 	ComputeShadowColour(light, isect, shade, colour, ticket);

@@ -21,6 +21,8 @@ class ShadowEvents : public Trace
 		dsm_result TraceRays(const LightSource& light, const dsm_ray *rays, unsigned int count, double tolerance, dsm_sink *sink);
 
 		const ShadowHits& Hits() const { return hits; }
+		POV_ULONG Shaded() const { return shaded; }              ///< surfaces
+		POV_ULONG Evaluations() const { return media.evaluations; } ///< of densities
 	private:
 		class SpanSink : public ShadowMedia::Sink
 		{
@@ -38,6 +40,7 @@ class ShadowEvents : public Trace
 		MediaFunctor noMedia;
 		RadiosityFunctor noRadiosity;
 		const bool volumes;
+		POV_ULONG shaded;
 
 		const LightSource *containersOf; ///< the light that `containers` belongs to
 		vector<ObjectPtr> containers;    ///< hold the light itself, or the point of its plane where the ray begins

@@ -51,7 +51,7 @@ const size_t kMostSurfaces = 65536;
 }
 
 ShadowHits::ShadowHits(const ShadowCasters& c, TraceThreadData *t) :
-	compared(0), different(0),
+	compared(0), different(0), asks(0), drawn(0), walks(0),
 	casters(c), thread(t), order(kObjects), rays(NULL), byObject(false), source(kRays), asked(0),
 	probe(Ray::OtherRay, true)
 {
@@ -146,6 +146,7 @@ void ShadowHits::FindTogether()
 /// Adds the rays that the object at a place of the tree may be hit by.
 void ShadowHits::SelectRays(unsigned int place)
 {
+	drawn++;
 	if(!casters.Draw(place, beam.Frame(), outline))
 		beam.SelectAll(selected);
 	else if(!beam.Hides(outline.rect))
@@ -187,6 +188,7 @@ void ShadowHits::FindByRay(const dsm_ray& ray, vector<Hit>& out)
 	double enter, leave;
 	unsigned int caster;
 
+	walks++;
 	Start(track, ray);
 	found[kRays].veils.clear();
 	found[kRays].surfaces.clear();
@@ -210,6 +212,7 @@ void ShadowHits::Ask(unsigned int caster, const dsm_ray& ray, double enter, doub
 	{
 		bool more = false;
 
+		asks++;
 		if((asked++ & 0x0f) == 0)
 			Task::CurrentTaskCooperate();
 		for(int i = 0; i < 3; i++)

@@ -43,6 +43,7 @@ class ShadowHits
 
 		bool Comparing() const { return order == kBoth; }
 		POV_ULONG compared, different; ///< rays
+		POV_ULONG asks, drawn, walks;  ///< of objects, of outlines and of rays by themselves
 	private:
 		enum Order { kObjects, kRays, kBoth };
 

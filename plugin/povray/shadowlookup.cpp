@@ -14,6 +14,7 @@
 #include "backend/shape/cones.h"
 #include "backend/shadow/shadowcontext.h"
 #include "backend/shadow/shadowmaps.h"
+#include "backend/shadow/shadowsurvey.h"
 
 // this must be the last file included
 #include "base/povdebug.h"
@@ -115,15 +116,20 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 	if(maps.Unshadowed())
 		return true;
 
-	const size_t index = maps.Find(lightsource);
-	if(index == ShadowMaps::kNone)
+	ShadowSurvey *survey = shadowReceiver.survey;
+	if((survey != NULL) && survey->Tracing())
 		return false;
+
+	// a survey leaves out what it need not know
+	const size_t index = maps.Find(lightsource);
+	if((index == ShadowMaps::kNone) || ((survey != NULL) && !maps.IsUndecided(index)))
+		return survey != NULL;
 
 	const ShadowMap& map = maps[index];
 	if(!lightsourceray.IsHollowRay() ||
 	   (!(qualityFlags & Q_VOLUME) && (maps.Casters().HasVolumes() || map.atmosphere)) ||
 	   (map.photons && sceneData->photonSettings.photonsEnabled && (sceneData->surfacePhotonMap.numPhotons > 0) && !threadData->litObjectIgnoresPhotons))
-		return false;
+		return survey != NULL;
 
 	if(shadowReceiver.context == NULL)
 		shadowReceiver.context = maps.Current();
@@ -138,6 +144,11 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 		for(int i = 0; i < 2; i++)
 			for(int k = 0; k < 3; k++)
 				receiver.footprint[i][k] = shadowReceiver.footprint[i][k];
+	}
+	if(survey != NULL)
+	{
+		survey->Request(index, receiver, lightsource, depth, lightsourceray, point, colour, ticket);
+		return true;
 	}
 	if(shadowReceiver.context->LookUp(index, receiver, rgb) == DSM_TRACE)
 		return false;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
 #include <iomanip>
 #include <sstream>
 
@@ -16,6 +19,7 @@
 #include "backend/shadow/shadowbaketask.h"
 #include "backend/shadow/shadowcontext.h"
 #include "backend/shadow/shadowmaps.h"
+#include "backend/shadow/shadowsurvey.h"
 #include "backend/support/taskqueue.h"
 
 // this must be the last file included
@@ -55,6 +59,14 @@ const vector<ObjectPtr> kNoObjects;
 string BlockForAll(int method)
 {
 	return (method == kPOVList_ShadowMethod_Deep) ? "deep_shadow" : (method == kPOVList_ShadowMethod_Map) ? "shadow_map" : "";
+}
+
+/// The environment's DEEP_SHADOW_CHOICE says "map": maps are not to be given up because they cost more than rays.
+bool AlwaysMaps()
+{
+	const char *wish = getenv("DEEP_SHADOW_CHOICE");
+
+	return (wish != NULL) && (strcmp(wish, "map") == 0);
 }
 
 /// Whether fog dims light by one factor a length, so that it can be multiplied in at the look-up.
@@ -195,11 +207,13 @@ bool ShadowMaps::Create(const LightSource& light, const ShadowSettings& settings
 	entry.deep = (string(settings.Block().name) == "deep_shadow");
 	entry.loadPath = settings.loadPath;
 	entry.savePath = settings.savePath;
+	entry.choice = (entry.deep && !settings.IsBlurred() && entry.loadPath.empty() && entry.savePath.empty() && !AlwaysMaps()) ? ShadowMap::kOpen : ShadowMap::kNone;
+	entry.cost = 0.0;
 	maps.push_back(entry);
 	return true;
 }
 
-void ShadowMaps::AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads)
+void ShadowMaps::AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads, unsigned int method, double threshold, unsigned int depth)
 {
 	bool files = false, saves = false;
 
@@ -220,6 +234,72 @@ void ShadowMaps::AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads
 			threads.push_back(static_cast<ViewThreadData *>(queue.AppendTask(new ShadowBakeTask(viewData))));
 		queue.AppendSync();
 	}
+	if(HasUndecided())
+	{
+		const ShadowSampling sampling = { method, threshold, depth };
+		threads.push_back(static_cast<ViewThreadData *>(queue.AppendTask(new ShadowSurveyTask(viewData, sampling))));
+		queue.AppendSync();
+	}
+}
+
+bool ShadowMaps::HasUndecided() const
+{
+	for(size_t i = 0; i < maps.size(); i++)
+		if(IsUndecided(i))
+			return true;
+	return false;
+}
+
+string ShadowMaps::Times(double cost)
+{
+	const double kMost = 100.0;
+	std::ostringstream text;
+
+	if(cost >= kMost)
+		text << "more than " << kMost;
+	else
+		text << "about " << std::setprecision(2) << cost;
+	return text.str();
+}
+
+/// Lights are told apart by their order in the scene: they have no names.
+string ShadowMaps::Name(const LightSource& light) const
+{
+	std::ostringstream name;
+
+	name << "light source " << light.index + 1 << (light.lightGroupLight ? " of those in light groups" : "");
+	return name.str();
+}
+
+void ShadowMaps::Decide(size_t map, bool useMap, double cost)
+{
+	ShadowMap& entry = maps[map];
+	std::ostringstream sentence;
+
+	entry.choice = useMap ? ShadowMap::kMap : ShadowMap::kRays;
+	entry.cost = cost;
+	if(useMap)
+		return;
+
+	std::replace(globalLights.begin(), globalLights.end(), map, size_t(kNone));
+	std::replace(groupLights.begin(), groupLights.end(), map, size_t(kNone));
+	rayTracedLights++;
+	sentence << "The shadows of " << Name(*entry.light) << " are ray-traced: ";
+	if(cost > 0.0)
+		sentence << "a map would cost " << Times(cost) << " times as much.";
+	else
+		sentence << "they are too few for a map.";
+	Tell(1, sentence.str());
+}
+
+double ShadowMaps::FinestTiles(size_t map) const
+{
+	const double kTilePixels = 256.0;
+	dsm_statistics s = { 0 };
+
+	s.size = sizeof(s);
+	ShadowPlugin::Api().statistics(maps[map].map.get(), &s);
+	return min(double(s.tiles), 2.0 * s.faces + 1.1 * s.pixels / kTilePixels); // those at edges are cut
 }
 
 bool ShadowMaps::LeaveBake(size_t map)

@@ -27,7 +27,13 @@ struct ShadowMap
 	bool atmosphere;  ///< fog and atmospheric media dim this light, and are multiplied in at the look-up
 	bool deep;        ///< else it holds one depth a pixel
 	string loadPath, savePath; ///< empty: no file
+
+	enum Choice { kNone, kOpen, kMap, kRays };
+	Choice choice;    ///< kNone: it had none; kOpen: not before the survey is over
+	double cost;      ///< of the map, in that of its rays; 0: nobody seems to ask for it
 };
+
+struct ShadowSampling;
 
 class ShadowMaps
 {
@@ -54,8 +60,18 @@ class ShadowMaps
 		const ShadowCasters& Casters() const { return casters; }
 
 		/// Queues what has to be done before anything is shaded: files are opened, and maps that are saved are baked and saved.
+		/// Then comes the survey, if a light has a choice.
 		/// @param[in,out]  threads     the tasks' thread data is added here
-		void AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads);
+		/// @param[in]      method, threshold, depth    of antialiasing
+		void AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads, unsigned int method, double threshold, unsigned int depth);
+
+		/// Lights that may be ray-traced instead, if that costs less. Decided once, before the first look-up, by one thread.
+		bool IsUndecided(size_t map) const { return maps[map].choice == ShadowMap::kOpen; }
+		bool HasUndecided() const;
+		void Decide(size_t map, bool useMap, double cost);
+
+		/// How many of the finest tiles a map has.
+		double FinestTiles(size_t map) const;
 
 		/// Tells the front end how far the map is, now and then.
 		void Progress(size_t map, double share, bool saving);
@@ -71,6 +87,7 @@ class ShadowMaps
 		string Statistics() const;
 		string Statistics(bool deep) const;
 		string Comparison() const;
+		string Choices() const;
 
 		static const size_t kNone = static_cast<size_t>(-1);
 	private:
@@ -93,6 +110,8 @@ class ShadowMaps
 		Timer sinceProgress;
 
 		size_t Add(const LightSource& light, int method);
+		string Name(const LightSource& light) const;
+		static string Times(double cost);
 		bool CanHaveMap(const LightSource& light) const;
 		bool Create(const LightSource& light, const ShadowSettings& settings);
 		void Tell(int severity, const string& sentence) const;

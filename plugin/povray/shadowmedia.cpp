@@ -74,7 +74,7 @@ void Quarters(double a, double b, double slopeA, double slopeB, double out[5])
 
 }
 
-ShadowMedia::ShadowMedia(TraceThreadData *td) : thread(td), grey(true), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0)
+ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0)
 {
 }
 
@@ -263,6 +263,7 @@ void ShadowMedia::Know(Sample& sample) const
 	if(sample.known)
 		return;
 
+	evaluations++;
 	const Vector3d point(ray->origin[X] + sample.depth * ray->direction[X], ray->origin[Y] + sample.depth * ray->direction[Y],
 	                     ray->origin[Z] + sample.depth * ray->direction[Z]);
 	for(size_t i = 0; i < mapped.size(); i++)

@@ -39,6 +39,8 @@ class ShadowMedia
 		/// @param[in]      tolerance   of light at any depth
 		/// @return                     what is visible at `back`
 		double Integrate(const dsm_ray& ray, double front, double back, double visible, double tolerance, Sink& sink);
+
+		mutable POV_ULONG evaluations; ///< of all densities at a point
 	private:
 		/// Media beyond these many are sampled without their maps.
 		enum { kMostMapped = 3 };

@@ -9,6 +9,7 @@ namespace pov
 {
 
 class ShadowContext;
+class ShadowSurvey;
 
 struct ShadowSurface
 {
@@ -30,6 +31,7 @@ struct ShadowSample
 struct ShadowReceiver
 {
 	ShadowSurface surface;
+	ShadowSurvey *survey;     ///< that the Trace object belongs to, or NULL
 	ShadowContext *context;   ///< of the thread that the Trace object works in; NULL before its first look-up
 
 	const Ray *cameraRay;     ///< the camera ray that is being traced; NULL if it stands for no known part of the image
@@ -37,7 +39,7 @@ struct ShadowReceiver
 	bool footprintKnown;
 	double footprint[2][3];   ///< of cameraRay on what it has hit, as dsm_receiver wants it
 
-	ShadowReceiver() : context(NULL), cameraRay(NULL), footprintKnown(false) { }
+	ShadowReceiver() : survey(NULL), context(NULL), cameraRay(NULL), footprintKnown(false) { }
 };
 
 /// Sets the receiver for as long as a surface is shaded, or clears it, and puts the last one back.

@@ -12,7 +12,7 @@ namespace pov
 
 using namespace pov_base;
 
-ShadowSettings::ShadowSettings(const string& name) : block(FindBlock(name)), settings(NULL)
+ShadowSettings::ShadowSettings(const string& name) : block(FindBlock(name)), settings(NULL), blurred(false)
 {
 	const dsm_api_table& api = ShadowPlugin::Api();
 
@@ -32,9 +32,11 @@ string ShadowSettings::Set(unsigned int parameter, const char *choice, const dou
 {
 	char why[512] = "";
 
-	if(ShadowPlugin::Api().settings_set(settings, parameter, choice, numbers, count, why, sizeof(why)) == DSM_OK)
-		return string();
-	return why;
+	if(ShadowPlugin::Api().settings_set(settings, parameter, choice, numbers, count, why, sizeof(why)) != DSM_OK)
+		return why;
+	if((string(block->parameters[parameter].name) == "blur") && (count > 0))
+		blurred = (numbers[0] > 0.0);
+	return string();
 }
 
 const dsm_block *ShadowSettings::FindBlock(const string& name)

@@ -34,11 +34,15 @@ class ShadowSettings
 		/// What a word that takes the name of a file was given; empty if nothing.
 		string Text(const char *word) const;
 
+		/// Whether look-ups are softened beyond what one camera ray stands for.
+		bool IsBlurred() const { return blurred; }
+
 		/// Where the two files are; empty: none. The names alone do not tell.
 		string loadPath, savePath;
 	private:
 		const dsm_block *block;
 		dsm_settings *settings;
+		bool blurred;
 
 		ShadowSettings(const ShadowSettings&);
 		ShadowSettings& operator=(const ShadowSettings&);

@@ -20,6 +20,9 @@ namespace
 
 const char kRule[] = "----------------------------------------------------------------------------\n";
 
+/// Lights that are named. The front end takes no more than 4096 characters.
+const size_t kMostChoices = 16;
+
 /// What all maps of one kind have in common.
 struct Sum
 {
@@ -56,7 +59,35 @@ struct Sum
 
 string ShadowMaps::Statistics() const
 {
-	return Statistics(true) + Statistics(false) + Comparison();
+	return Statistics(true) + Statistics(false) + Choices() + Comparison();
+}
+
+/// What was chosen for the lights that had a choice.
+string ShadowMaps::Choices() const
+{
+	std::ostringstream text;
+	size_t told = 0, more = 0;
+
+	for(size_t i = 0; i < maps.size(); i++)
+	{
+		const ShadowMap& map = maps[i];
+
+		if((map.choice != ShadowMap::kMap) && (map.choice != ShadowMap::kRays))
+			continue;
+		if(told == kMostChoices)
+		{
+			more++;
+			continue;
+		}
+		text << std::left << std::setw(21) << ((told++ == 0) ? "Shadows by map/rays:" : "") << Name(*map.light)
+		     << ((map.choice == ShadowMap::kMap) ? ": map" : ": rays");
+		if(map.cost > 0.0)
+			text << ", a map costs " << Times(map.cost) << " times the rays";
+		text << "\n";
+	}
+	if(more > 0)
+		text << std::setw(21) << "" << "and " << more << " more\n";
+	return text.str();
 }
 
 /// Where both orders of light rays are tried: whether they hit the same.
@@ -89,7 +120,7 @@ string ShadowMaps::Statistics(bool deep) const
 	{
 		dsm_statistics s = { 0 };
 
-		if(maps[i].deep != deep)
+		if((maps[i].deep != deep) || (maps[i].choice == ShadowMap::kRays))
 			continue;
 		s.size = sizeof(s);
 		ShadowPlugin::Api().statistics(maps[i].map.get(), &s);

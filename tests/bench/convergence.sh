@@ -8,6 +8,7 @@
 # pictures have the same camera rays, so that the difference is the shadow's alone; the report's have fewer, as its are timed.
 # LADDER="512,16 2048,64" are map resolutions and samples; PART_hairball and PART_glass are X:Y:w:h in a picture of 160 x 120.
 set -eu
+export DEEP_SHADOW_CHOICE=map  # what is measured are maps, also where rays would cost less
 . "$(dirname "$0")/../report/measure.sh"
 : "${LADDER:=256,4 256,16 512,16 512,64 1024,16 1024,64 2048,16 2048,64}"
 : "${PART_hairball:=68:49:14:13}" "${PART_glass:=41:55:62:46}"

@@ -6,6 +6,7 @@
 #
 # FORM=short or smoke: smaller. RUNS=N: as in the report. What is measured counts for the report, too.
 set -eu
+export DEEP_SHADOW_CHOICE=map  # what is measured are maps, also where rays would cost less
 top=$(cd "$(dirname "$0")/../.." && pwd)
 : "${FORM:=full}" "${REPORT:=$top/build/report}"
 export REPORT

@@ -8,6 +8,7 @@
 # (parsing, trees) is measured too and taken off; what is left is tracing, averaging, compression and the file. "Trace"
 # is the share of the wall clock that went into finding hits and reporting them. RUNS=3: medians.
 set -eu
+export DEEP_SHADOW_CHOICE=map  # what is measured are maps, also where rays would cost less
 top=$(cd "$(dirname "$0")/../.." && pwd)
 : "${POVRAY:=$top/build/bin/povray}" "${RUNS:=3}" "${RESOLUTION:=512}"
 export LC_ALL=C

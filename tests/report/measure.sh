@@ -5,6 +5,7 @@
 # A picture is "W:H:DEPTH:X:Y:w:h": its size, the antialiasing depth (DEPTH x DEPTH rays an image pixel; 1: one ray), and
 # the part of it, in image pixels from the upper left corner, in which errors are counted.
 set -u
+export DEEP_SHADOW_CHOICE=map  # what is measured are maps, also where rays would cost less
 top=${top:-$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)}
 : "${POVRAY:=$top/build/bin/povray}" "${DSMTOOL:=$top/build/bin/dsmtool}" "${SHADOW_ERROR:=$top/tests/image/shadow_error}"
 : "${VERTICES:=$top/tests/bench/vertices}" "${OIIOTOOL:=oiiotool}" "${THREADS:=2}"
