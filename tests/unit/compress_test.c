@@ -288,6 +288,30 @@ static void a_million_vertices(void **state) {
   free(e);
 }
 
+/* A step, a million vertices at one height, and a step. */
+static void a_plateau_of_a_million_vertices(void **state) {
+  (void)state;
+  enum { n = 1000000 };
+  vertex *e = malloc(n * sizeof *e);
+  vertices out = {0};
+  for (int i = 0; i < n; ++i) e[i] = grey(1 + i * 1e-4, 0.7);
+  e[n - 1].v = rgb_grey(0);
+  e[n - 1].z = e[n - 2].z;
+  const double tolerances[] = {0, 0.002, 0.25}, corners[] = {1, 0.7, 0.7, 0};
+  for (int t = 0; t < 3; ++t) {
+    compress(e, n, 1, tolerances[t], &out);
+    assert_int_equal(out.count, 4);
+    for (int i = 0; i < 4; ++i)
+      assert_true(out.data[i].z == e[i < 2 ? 0 : n - 1].z && out.data[i].v.c[0] == corners[i]);
+    out.count = 0;
+    assert_int_equal(compress_minimal(e, n, 1, tolerances[t], &out), DSM_OK);
+    assert_int_equal(out.count, t > 0 ? 3 : 4);   /* without tolerance it is the greedy one */
+    assert_true(out.data[out.count - 1].v.c[0] == 0);
+  }
+  vertices_free(&out);
+  free(e);
+}
+
 /* Depths so close that slopes overflow. */
 static void closest_depths_stay_finite(void **state) {
   (void)state;
@@ -330,6 +354,7 @@ int main(void) {
     cmocka_unit_test(channels_share_depths),
     cmocka_unit_test(random_functions_stay_within_the_tolerance),
     cmocka_unit_test(a_million_vertices),
+    cmocka_unit_test(a_plateau_of_a_million_vertices),
     cmocka_unit_test(closest_depths_stay_finite),
     cmocka_unit_test(appends_and_undoes),
   };
