@@ -34,6 +34,9 @@ export LSAN_OPTIONS=suppressions=$here/address.supp:print_suppressions=0
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=suppressions=$here/thread.supp:halt_on_error=0:exitcode=99
 
+# Where a sanitizer stands between, the loader does not know which library's search path it is to take.
+export LD_LIBRARY_PATH=$tree/plugin/.libs
+
 mkdir -p "$tree/build"
 [ "$which-$part" = valgrind-program ] || "$here/build.sh" "sanitize-$which" "$flags"
 cd "$tree"
