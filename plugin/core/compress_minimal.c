@@ -14,7 +14,8 @@
  * pay a segment in front of the wall for a better start behind it, because one segment more makes good any start.
  *
  * Goals are found in a tunnel that is narrower by two margins, paths in one narrower by one, so that depths and
- * values can be rounded. Where lines are so steep that this is not enough, the result is checked.
+ * values can be rounded. That is not enough where lines are steep, or where a line is known by two points that nearly coincide, a short
+ * goal's ends for one: so the result is checked.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -292,7 +293,7 @@ static dsm_result compress_grey(const vertex *in, size_t count, bounds within, v
     s->doubtful = tunnel_steepness(&s->tunnel) * 0x1p-52 > s->margin / 8;
     *lost = !find_goals(s);
     if (!*lost) result = walk(&j, lost);
-    if (!*lost && !result && s->doubtful) *lost = !tunnel_holds(&s->tunnel, out->data + start, out->count - start);
+    if (!*lost && !result) *lost = !tunnel_holds(&s->tunnel, out->data + start, out->count - start);
   }
   *doubtful = s->doubtful;
   free(memory);

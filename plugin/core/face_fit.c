@@ -10,6 +10,10 @@
 static const double COS_WIDEST = 0.5;   /* 60 degrees: beyond, a perspective pixel at the rim is 1/8 as
                                            large as one in the middle, and a cube serves better */
 
+/* The cosine of a millionth of a degree is 1. A spot as narrow as that is as wide as the rounding of a cosine makes it, or
+ * all of its light would fall beside the face. Squared. */
+static const double COS_ROUNDING = 0x1p-48;
+
 /* What a fit is made for. */
 typedef struct {
   const dsm_light *light;
@@ -249,7 +253,7 @@ static void fit_light(wish *w, const dsm_settings *settings, projection *out)
     return;
   }
   if (light->kind == DSM_LIGHT_SPOT) {
-    double c = light->cos_angle, t = sqrt(fmax(0, 1 - c * c)) / fmax(c, 1e-300);
+    double c = light->cos_angle, t = sqrt(fmax(0, 1 - c * c) + COS_ROUNDING) / fmax(c, 1e-300);
     rectangle window = {-t, -t, t, t};
     out->axes = frame_along(light->direction);
     if (c >= COS_WIDEST) {

@@ -203,14 +203,17 @@ void ShadowHits::FindByRay(const dsm_ray& ray, vector<Hit>& out)
 void ShadowHits::Ask(unsigned int caster, const dsm_ray& ray, double enter, double leave, Track& track, Found& out)
 {
 	const ObjectPtr object = casters.Object(caster);
-	double start = max(0.0, enter - kRunUp);
+	// what lies at the light itself is not in its way; how near that is, is stock's, but for scenes smaller than a unit
+	const double first = SMALL_TOLERANCE * min(1.0, ray.far_depth);
+	const bool atLight = (enter <= kRunUp);
+	double start = (first < SMALL_TOLERANCE) ? enter - kRunUp : max(0.0, enter - kRunUp);
 	double last = start;
 	unsigned int number = 0;
 	IStack answers(thread->stackPool);
 
 	do
 	{
-		bool more = false;
+		bool more = false, behind = false;
 
 		asks++;
 		if((asked++ & 0x0f) == 0)
@@ -232,8 +235,14 @@ void ShadowHits::Ask(unsigned int caster, const dsm_ray& ray, double enter, doub
 			const double depth = start + isect.Depth;
 			const bool opaque = Test_Flag(isect.Object, OPAQUE_FLAG);
 
-			if((isect.Depth < MIN_ISECT_DEPTH) || ((start == 0.0) && (isect.Depth < SMALL_TOLERANCE)) || !(enter <= depth + kAhead))
+			if((isect.Depth < MIN_ISECT_DEPTH) || !(enter <= depth + kAhead))
 				continue;
+			if(atLight && (depth < first))
+			{
+				behind = behind || (depth > last);
+				last = max(last, depth);
+				continue;
+			}
 			if(!opaque)
 			{
 				more = more || (depth > last);
@@ -261,7 +270,7 @@ void ShadowHits::Ask(unsigned int caster, const dsm_ray& ray, double enter, doub
 			}
 		}
 
-		if(!more || Test_Flag(object, OPAQUE_FLAG))
+		if(!behind && (!more || Test_Flag(object, OPAQUE_FLAG)))
 			break;
 		start = last + kStepOn * max(1.0, fabs(last));
 	}

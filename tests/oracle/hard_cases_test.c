@@ -156,6 +156,21 @@ static void odd_spotlights(void **state) {
   }
 }
 
+/* A spotlight so far from what it lights that the cosine of its cone is 1: no shadow may be lost beside a face of no width. */
+static void a_cone_whose_cosine_is_one(void **state) {
+  (void)state;
+  shape sheet = sheet_at(0, 1, 0.3, 0.3, 0.3);
+  stage s;
+  dsm_light light = spot_at(0, 0, -1e9, 0, 0, 1, 2e-7);
+  assert_true(light.cos_angle == 1);
+  stage_open(&s, &sheet, 1, light, WORDS("resolution 128", "tolerance 0.001"));
+  for (double x = -0.9; x < 1; x += 0.3) {
+    assert_light(&s, in_air(x, -x, -1), 1, 0);
+    assert_light(&s, in_air(x, -x, 1), 0.3, 0.001);
+  }
+  stage_close(&s);
+}
+
 /* Exactly on the borders of pixels, tiles and faces, and a step of a double to each side. */
 static void borders(void **state) {
   (void)state;
@@ -211,7 +226,7 @@ int main(void) {
     cmocka_unit_test(all_depths_in_one_map),   cmocka_unit_test(any_scale_and_place), cmocka_unit_test(ten_thousand_layers),
     cmocka_unit_test(opaque_behind_nearly_opaque), cmocka_unit_test(a_surface_at_the_light), cmocka_unit_test(thin_and_thick_fog),
     cmocka_unit_test(limits_of_the_settings),  cmocka_unit_test(odd_spotlights),      cmocka_unit_test(borders),
-    cmocka_unit_test(grazing_light),
+    cmocka_unit_test(grazing_light),           cmocka_unit_test(a_cone_whose_cosine_is_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

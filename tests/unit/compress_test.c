@@ -288,6 +288,44 @@ static void a_million_vertices(void **state) {
   free(e);
 }
 
+/* A step, a million vertices at one height, and a step. */
+static void a_plateau_of_a_million_vertices(void **state) {
+  (void)state;
+  enum { n = 1000000 };
+  vertex *e = malloc(n * sizeof *e);
+  vertices out = {0};
+  for (int i = 0; i < n; ++i) e[i] = grey(1 + i * 1e-4, 0.7);
+  e[n - 1].v = rgb_grey(0);
+  e[n - 1].z = e[n - 2].z;
+  const double tolerances[] = {0, 0.002, 0.25}, corners[] = {1, 0.7, 0.7, 0};
+  for (int t = 0; t < 3; ++t) {
+    compress(e, n, 1, tolerances[t], &out);
+    assert_int_equal(out.count, 4);
+    for (int i = 0; i < 4; ++i)
+      assert_true(out.data[i].z == e[i < 2 ? 0 : n - 1].z && out.data[i].v.c[0] == corners[i]);
+    out.count = 0;
+    assert_int_equal(compress_minimal(e, n, 1, tolerances[t], &out), DSM_OK);
+    assert_int_equal(out.count, t > 0 ? 3 : 4);   /* without tolerance it is the greedy one */
+    assert_true(out.data[out.count - 1].v.c[0] == 0);
+  }
+  vertices_free(&out);
+  free(e);
+}
+
+/* A level end that begins a billionth in front of a step: of the line that leads there two points are known that nearly coincide. */
+static void a_goal_of_no_length(void **state) {
+  (void)state;
+  const double z0 = 2.8626751370184044e-06, z1 = 2.8723391659009704e-06, z2 = 3.3136797312525759e-06, z3 = 4.3821951980896363e-06;
+  const vertex e[] = {grey(z0, 1), grey(z1, 1), grey(z2, 0.85547637924347697), grey(z3, 0.77429085451455593),
+                      grey(z3, 0.73389531635635608), grey(4.3821951980934928e-06, 0.73389531635635608),
+                      grey(4.382195213535327e-06, 0.73389531635635608)};
+  double tolerance = 0.047066195689308171, spent = 0.021319474472671695;
+  vertices out = {0};
+  assert_int_equal(compress_minimal_after(e, 7, 1, tolerance, spent, &out), DSM_OK);
+  assert_true(largest_error(e, 7, &out, 1) <= tolerance - spent + 2e-15);
+  vertices_free(&out);
+}
+
 /* Depths so close that slopes overflow. */
 static void closest_depths_stay_finite(void **state) {
   (void)state;
@@ -330,6 +368,8 @@ int main(void) {
     cmocka_unit_test(channels_share_depths),
     cmocka_unit_test(random_functions_stay_within_the_tolerance),
     cmocka_unit_test(a_million_vertices),
+    cmocka_unit_test(a_plateau_of_a_million_vertices),
+    cmocka_unit_test(a_goal_of_no_length),
     cmocka_unit_test(closest_depths_stay_finite),
     cmocka_unit_test(appends_and_undoes),
   };
