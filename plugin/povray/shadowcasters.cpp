@@ -55,22 +55,10 @@ double HalfDiagonal(const dsm_box& box)
 	return 0.5 * sqrt(sum);
 }
 
-bool Dims(const Interior *interior)
-{
-	if(interior == NULL)
-		return false;
-	if((interior->Fade_Power > 0.0) && (fabs(interior->Fade_Distance) > EPSILON))
-		return true;
-	for(vector<Media>::const_iterator media(interior->media.begin()); media != interior->media.end(); media++)
-		if(media->use_extinction)
-			return true;
-	return false;
-}
-
 /// Whether an object, or a part of it, takes light from its inside.
 bool HasVolume(const ObjectBase *object)
 {
-	if(Dims(object->interior))
+	if(ShadowCasters::Dims(object->interior))
 		return true;
 	if(object->Type & IS_COMPOUND_OBJECT)
 	{
@@ -89,6 +77,18 @@ struct LargerFirst
 	bool operator()(unsigned int a, unsigned int b) const { return (size[a] != size[b]) ? (size[a] > size[b]) : (a < b); }
 };
 
+}
+
+bool ShadowCasters::Dims(const Interior *interior)
+{
+	if(interior == NULL)
+		return false;
+	if((interior->Fade_Power > 0.0) && (fabs(interior->Fade_Distance) > EPSILON))
+		return true;
+	for(vector<Media>::const_iterator media(interior->media.begin()); media != interior->media.end(); media++)
+		if(media->use_extinction)
+			return true;
+	return false;
 }
 
 ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : hasVolumes(false), hasUnmappedVolumes(false)

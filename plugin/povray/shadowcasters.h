@@ -26,6 +26,8 @@ class ShadowCasters
 		const vector<ObjectPtr>& Unmapped() const { return unmapped; }
 		bool IsUnmapped(const ObjectBase *object) const;
 
+		/// Whether an inside takes light.
+		static bool Dims(const Interior *interior);
 		/// Whether a map holds, or would have to hold, light that media or fading take.
 		bool HasVolumes() const { return hasVolumes; }
 		/// Whether an unmapped object has media or fading: no map can hold that, nor a single shadow test add it.

@@ -131,13 +131,14 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray,
 {
 	const dsm_api_table& api = ShadowPlugin::Api();
 	double visible = 1.0;
+	size_t i = 0;
 
 	if(found.empty())
 		return DSM_OK;
 	if(casters.HasVolumes())
 		EnterContainers(light, ray);
 
-	for(size_t i = 0; i < found.size(); i++)
+	for(; i < found.size(); i++)
 	{
 		const ShadowHits::Hit& hit = found[i];
 		double colour[3] = { 0.0, 0.0, 0.0 };
@@ -174,7 +175,39 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray,
 		if(result != DSM_OK)
 			return result;
 	}
-	return DSM_OK;
+	return IsOpen(ray, (i < found.size()) ? &found[i] : NULL) ? api.sink_mark(sink, index) : DSM_OK;
+}
+
+/// Sheets, height fields and other open things begin what they do not end. Stock then goes by what the ray of the camera has
+/// passed on its way to the receiver, and that no map knows.
+/// @param      last    where light was gone; NULL: nowhere
+bool ShadowEvents::IsOpen(const dsm_ray& ray, const ShadowHits::Hit *last)
+{
+	vector<ObjectPtr> around;
+
+	if(!casters.HasVolumes())
+		return false;
+	if((last != NULL) && (last->surface != ShadowHits::kOpaque))
+	{
+		const Interior *own = hits.Surface(*last).Object->interior;
+		inside.erase(std::remove(inside.begin(), inside.end(), own), inside.end());
+	}
+	for(vector<Interior *>::const_iterator i(inside.begin()); i != inside.end(); i++)
+	{
+		if(!ShadowCasters::Dims(*i))
+			continue;
+		if(last == NULL)
+			return true;
+		if(around.empty())
+			casters.Containing(Vector3d(ray.origin[X], ray.origin[Y], ray.origin[Z]) + last->depth * Vector3d(ray.direction[X], ray.direction[Y], ray.direction[Z]), threadData, around);
+
+		bool holds = false;
+		for(vector<ObjectPtr>::const_iterator object(around.begin()); object != around.end(); object++)
+			holds = holds || ((*object)->interior == *i);
+		if(!holds)
+			return true;
+	}
+	return false;
 }
 
 /// Fading takes one factor, 1 / (1 + (d/D)^p), from an object's surface on the light's side to the next surface only.

@@ -56,6 +56,7 @@ class ShadowEvents : public Trace
 		void Toggle(Interior *interior);
 		RGBColour ShadeSurface(const LightSource& light, const dsm_ray& ray, Intersection& isect);
 		dsm_result ReportRay(const LightSource& light, const dsm_ray& ray, const vector<ShadowHits::Hit>& found, unsigned int index, double tolerance, dsm_sink *sink);
+		bool IsOpen(const dsm_ray& ray, const ShadowHits::Hit *last);
 		dsm_result ReportFade(const Interior& interior, double front, double back, double tolerance, unsigned int index, dsm_sink *sink);
 		double ReportMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, SpanSink& sink);
 };
