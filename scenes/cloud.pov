@@ -34,7 +34,7 @@ camera {
 
 // What stands in a light's block: the same words for both kinds of map, but for those that only one has.
 #macro Words(Number)
-  resolution Resolution samples (Pcf ? NumSamples : Samples)
+  #ifdef (Accuracy) accuracy Accuracy #ifdef (Bound) resolution Bound #end #else resolution Resolution samples (Pcf ? NumSamples : Samples) #end
   #if (File = 1) save_file concat("cloud", str(Number, 0, 0), ".exr") #end
   #if (File = 2) load_file concat("cloud", str(Number, 0, 0), ".exr") #end
   #if (Pcf)

@@ -2,19 +2,12 @@
 #include "bake/bake_depth.h"
 
 #include <math.h>
-#include <time.h>
 
+#include "bake/seconds.h"
 #include "core/transmittance.h"
 
 /* Half is half: what a span's light is to this precision decides at most by how much of a span a depth is off. */
 static const double TOLERANCE = 0.002;
-
-static double seconds(void)
-{
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static dsm_ray make_ray(const bake_job *job, const tile_key *key, uint32_t x, uint32_t y)
 {

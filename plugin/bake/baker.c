@@ -13,11 +13,12 @@ typedef struct {
   depth_scratch depths;   /* in its place, for a map of depths */
 } baker;
 
-static dsm_result make(tile_maker *maker, const tile_key *key, const tile **out, tile_tally *tally)
+static dsm_result make(tile_maker *maker, const tile_key *key, const wanted_pixels *wanted, const tile **out,
+                       tile_tally *tally)
 {
   baker *b = (baker *)maker;
   return b->job.settings->block == BLOCK_SHADOW_MAP ? bake_depth(&b->job, &b->depths, key, out, tally)
-                                                    : bake_tile(&b->job, &b->scratch, key, out, tally);
+                                                    : bake_tile(&b->job, &b->scratch, key, wanted, out, tally);
 }
 
 static void destroy(tile_maker *maker)

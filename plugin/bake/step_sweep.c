@@ -72,10 +72,11 @@ static int settle(const sweep *s, rgb *mean)
   return fallen;
 }
 
-static dsm_result run(sweep *s, const depth_key *keys, const step_input *in, double *allowed, vertices *mean)
+static dsm_result run(sweep *s, const depth_key *keys, const step_input *in, noise_profile *profile, vertices *mean)
 {
+  size_t begin = mean->count;
   rgb last = rgb_grey(1);
-  double noise = 0;
+  double noise = 0, variance = 0;
   dsm_result result = DSM_OK;
   for (size_t i = 0; i < in->count && result == DSM_OK;) {
     double z = keys[i].z;
@@ -91,11 +92,14 @@ static dsm_result run(sweep *s, const depth_key *keys, const step_input *in, dou
     result = vertices_push(mean, z, before);
     if (result == DSM_OK)
       result = vertices_push(mean, z, last);
-    if (allowed) {
-      *allowed++ = noise;
+    if (profile && result == DSM_OK) {
+      size_t n = mean->count - begin;
+      profile->allowed[n - 2] = noise;
+      profile->variance[n - 2] = variance;
       if (s->pairs == 0)
         s->squares = 0;   /* without the rounding of those that were */
-      *allowed++ = noise = noise_allowed(s->squares, (double)s->pairs, s->rays);
+      profile->allowed[n - 1] = noise = noise_allowed(s->squares, (double)s->pairs, s->rays);
+      profile->variance[n - 1] = variance = noise_variance(s->squares, s->rays);
     }
   }
   return result;
@@ -141,7 +145,7 @@ dsm_result step_sweep(const step_input *in, step_scratch *scratch, noise_profile
   }
   for (int c = 0; c < s.channels; c++)
     s.sum[c].sum = s.rays;
-  return run(&s, scratch->keys, in, profile ? profile->allowed : NULL, mean);
+  return run(&s, scratch->keys, in, profile, mean);
 }
 
 void step_free(step_scratch *scratch)

@@ -132,14 +132,27 @@ FOR_CHANNELS void renew_gap(sweep *s, int channels, uint32_t i, double z) {
   if (s->pairs == 0) s->squares = 0;   /* without the rounding of those that were */
 }
 
-/* What the noise behind depth z allows, where the functions of `met` have turned. */
-FOR_CHANNELS double noise_behind(sweep *s, int channels, double z, const depth_key *met, const depth_key *end) {
+typedef struct { double allowed, variance; } noise;   /* see noise_profile */
+
+static void put_noise(noise_profile *profile, size_t place, noise n) {
+  profile->allowed[place] = n.allowed;
+  profile->variance[place] = n.variance;
+}
+
+static void raise_noise(noise_profile *profile, size_t place, noise n) {
+  profile->allowed[place] = greater(profile->allowed[place], n.allowed);
+  profile->variance[place] = greater(profile->variance[place], n.variance);
+}
+
+/* The noise behind depth z, where the functions of `met` have turned. */
+FOR_CHANNELS noise noise_behind(sweep *s, int channels, double z, const depth_key *met, const depth_key *end) {
   for (; met < end; ++met) {
     uint32_t i = (uint32_t)met->index;
     if (i > 0) renew_gap(s, channels, i - 1, z);
     if (i + 1 < s->count) renew_gap(s, channels, i, z);
   }
-  return noise_allowed(s->squares, s->pairs, (double)s->count);
+  double rays = (double)s->count;
+  return (noise){noise_allowed(s->squares, s->pairs, rays), noise_variance(s->squares, rays)};
 }
 
 /* The value in front of a depth and behind it. Rounding must not make light grow where no function grows,
@@ -161,14 +174,16 @@ FOR_CHANNELS void settle(const sweep *s, int channels, const rgb *front, const d
   *after = rgb_grey(after->c[0]);
 }
 
-FOR_CHANNELS dsm_result run(sweep *s, int channels, const depth_key *keys, size_t places, double *allowed,
+FOR_CHANNELS dsm_result run(sweep *s, int channels, const depth_key *keys, size_t places, noise_profile *profile,
                             vertices *out) {
   size_t since = 0, begin = out->count;
-  double z = 0, noise = 0;
+  double z = 0;
+  noise now = {0, 0};
   rgb last = rgb_grey(1), front = last, before = last, after = last;
   dsm_result result = DSM_OK;
   for (size_t i = 0, met; i < places && !result; i = met) {
-    double slope[3] = {0, 0, 0}, step = keys[i].z - z, was = noise;
+    double slope[3] = {0, 0, 0}, step = keys[i].z - z;
+    noise was = now;
     int turns = 0;
     z = keys[i].z;
     for (int c = 0; c < channels; ++c) {
@@ -186,19 +201,17 @@ FOR_CHANNELS dsm_result run(sweep *s, int channels, const depth_key *keys, size_
     for (int c = 0; c < channels; ++c) turns |= slope[c] != s->slopes[channels + c];
     int steps = differ(channels, before, after);
     last = after;
-    if (allowed) noise = noise_behind(s, channels, z, keys + i, keys + met);
+    if (profile) now = noise_behind(s, channels, z, keys + i, keys + met);
     if (steps || turns) {
-      if (allowed) allowed[out->count - begin] = steps ? was : noise;
+      if (profile) put_noise(profile, out->count - begin, steps ? was : now);
       result = vertices_push(out, z, before);
     }
     if (steps && !result) {
-      if (allowed) allowed[out->count - begin] = noise;
+      if (profile) put_noise(profile, out->count - begin, now);
       result = vertices_push(out, z, after);
     }
-    if (allowed && out->count > begin) {   /* where no vertex is put, the last one answers for more */
-      double *here = &allowed[out->count - begin - 1];
-      *here = greater(*here, noise);
-    }
+    if (profile && out->count > begin)   /* where no vertex is put, the last one answers for more */
+      raise_noise(profile, out->count - begin - 1, now);
   }
   return result;
 }
@@ -256,9 +269,8 @@ dsm_result average_and_noise(const average_input *in, average_scratch *scratch, 
     s.functions[i] = f;
   }
   size_t places = list_places(in, scratch->keys);
-  double *allowed = profile ? profile->allowed : NULL;
-  result = are_grey(in) ? run(&s, 1, scratch->keys, places, allowed, out)
-                        : run(&s, 3, scratch->keys, places, allowed, out);
+  result = are_grey(in) ? run(&s, 1, scratch->keys, places, profile, out)
+                        : run(&s, 3, scratch->keys, places, profile, out);
   if (result) out->count = begin;
   return result;
 }

@@ -14,6 +14,8 @@ static const double COS_WIDEST = 0.5;   /* 60 degrees: beyond, a perspective pix
  * all of its light would fall beside the face. Squared. */
 static const double COS_ROUNDING = 0x1p-48;
 
+enum { FIRST_PIXELS = 128 };   /* of the level at which a map with `accuracy` begins */
+
 /* What a fit is made for. */
 typedef struct {
   const dsm_light *light;
@@ -33,15 +35,25 @@ static uint32_t margin_pixels(double filter_width)
  * reads there has to be in the face's own margin. */
 static uint32_t cube_margin(const dsm_settings *settings)
 {
-  double reach = footprint_reach(blur_level(settings), 0);
+  uint32_t blur = blur_level(settings), first = first_level(settings);
+  double reach = footprint_reach(blur > first ? blur : first, 0);
   return margin_pixels(settings->filter_width) + (uint32_t)ceil(reach - 1.5);
+}
+
+uint32_t first_level(const dsm_settings *settings)
+{
+  uint32_t pixels = settings->resolution[0] > settings->resolution[1] ? settings->resolution[0] : settings->resolution[1];
+  uint32_t level = 0;
+  while (settings->accuracy > 0 && pixels >> level > FIRST_PIXELS)
+    level++;
+  return level;
 }
 
 uint32_t blur_level(const dsm_settings *settings)
 {
   double width = blur_pixels(settings);
   spread region = spread_of_square(width);
-  footprint f = footprint_of(&region, MAX_LEVELS - 1, 0);
+  footprint f = footprint_of(&region, MAX_LEVELS - 1, 1);
   return f.coarser > 0 ? f.level + 1 : f.level;
 }
 
@@ -284,6 +296,6 @@ void face_fit(const dsm_light *light, const dsm_settings *settings, projection *
   if (light->caster_count == 0)
     return;
   wish w = {light, settings->bounded ? &settings->bounds : NULL, settings->resolution,
-            margin_pixels(settings->filter_width)};
+            settings->accuracy > 0 ? cube_margin(settings) : margin_pixels(settings->filter_width)};
   fit_light(&w, settings, out);
 }

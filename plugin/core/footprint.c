@@ -5,6 +5,9 @@
 
 static const double PIXEL = 1.0 / 12;   /* variance of a pixel of the finest level */
 
+/* Of footprint_scaled: the coarser level has taken over when the area has grown by three quarters. */
+static const double BLEND = 4;
+
 void spread_add(spread *sum, const projection *p, const projected *at, const double sides[2][3])
 {
   const face *f = &p->faces[at->face];
@@ -31,7 +34,7 @@ static void choose_level(footprint *f, double scale, uint32_t most)
     f->coarser = (scale - here) / (3 * here);
 }
 
-footprint footprint_of(const spread *region, uint32_t most, int stretched)
+footprint footprint_of(const spread *region, uint32_t most, uint32_t probes)
 {
   footprint f = {0, 0, 1, 0, 0};
   double trace = region->xx + region->yy;
@@ -46,16 +49,16 @@ footprint footprint_of(const spread *region, uint32_t most, int stretched)
     return f;
   }
   double length = rest > 0 ? sqrt(12 * rest) : 0;
-  if (!stretched)
+  if (probes == 1)
     scale += 4 * fmax(0, rest);
   else {
-    double finest = length / (FOOTPRINT_PROBES - 1);
+    double finest = length / (probes - 1);
     scale = fmax(scale, finest * finest);
   }
   choose_level(&f, scale, most);
-  if (stretched && length > 0) {
+  if (probes > 1 && length > 0) {
     double pixel = sqrt(fmin(scale, ldexp(1, 2 * (int)most)));
-    f.probes = (uint32_t)fmin(FOOTPRINT_PROBES, 1 + floor(length / pixel + 0.5));
+    f.probes = (uint32_t)fmin(probes, 1 + floor(length / pixel + 0.5));
     /* n points, h apart, have the variance (n^2 - 1) h^2 / 12; no farther apart than two pixels */
     double n = f.probes, h = f.probes > 1 ? fmin(length / sqrt(n * n - 1), 2 * pixel) : 0;
     /* the longer axis: the larger of two ways to write the eigenvector */
@@ -64,6 +67,23 @@ footprint footprint_of(const spread *region, uint32_t most, int stretched)
     if (f.probes > 1 && norm > 0) {
       f.step_x = h * x / norm;
       f.step_y = h * y / norm;
+    }
+  }
+  return f;
+}
+
+footprint footprint_scaled(footprint f, double times, uint32_t most)
+{
+  double scale = times * ldexp(1 + 3 * f.coarser, 2 * (int)f.level);
+  f.level = 0;
+  f.coarser = 0;
+  for (; f.level < most && scale >= 4; scale /= 4)
+    f.level++;
+  if (f.level < most && scale > 1) {
+    f.coarser = BLEND * (scale - 1) / 3;
+    if (f.coarser >= 1) {
+      f.coarser = 0;
+      f.level++;
     }
   }
   return f;

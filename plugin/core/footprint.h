@@ -40,8 +40,12 @@ static inline spread spread_of_square(double side)
 /* Adds the parallelogram with these two sides (scene units) around a point, as one face sees it there. */
 void spread_add(spread *sum, const projection *p, const projected *at, const double sides[2][3]);
 
-/* `most` is the coarsest level that may be read, `stretched` whether there may be more than one probe. */
-footprint footprint_of(const spread *region, uint32_t most, int stretched);
+/* `most` is the coarsest level that may be read, `probes` how many of them there may be. */
+footprint footprint_of(const spread *region, uint32_t most, uint32_t probes);
+
+/* The same region with pixels of so many times the area. Two levels are blended only over a quarter of the way from one to the next: where
+ * levels are baked for themselves, both cost. */
+footprint footprint_scaled(footprint f, double times, uint32_t most);
 
 /* Pixels of the finest level beyond which a footprint with these limits reads nothing. */
 static inline double footprint_reach(uint32_t most, int stretched)

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "dsm.h"
+#include "core/vertices.h"
 
 /* LV 4: half of the worst noise that this many rays can have. */
 static inline double noise_ceiling(double rays) { return 0.25 / sqrt(rays); }
@@ -33,12 +33,23 @@ static inline double noise_allowed(double squares, double pairs, double rays)
   return error < most ? error : most;
 }
 
-/* Zero-initialise; a caller keeps it between pixels. */
+/* The variance of the mean itself. */
+static inline double noise_variance(double squares, double rays)
+{
+  return rays > 1 ? squares / (2 * rays * (rays - 1)) : 0;
+}
+
+/* Zero-initialise; a caller keeps it between pixels. Both hold from a vertex of the average to the next, or to infinity; of
+ * the vertices at one depth the last tells. */
 typedef struct {
-  double *allowed;   /* error that is noise, from a vertex of the average to the next, or to infinity; of the
-                        vertices at one depth the last tells */
+  double *allowed;    /* error that is noise */
+  double *variance;   /* noise_variance */
   size_t room;
 } noise_profile;
+
+/* The largest variance that lasts for a depth of thin * z + thin_at_least, or to infinity. A slanted surface, which every ray of
+ * the pixel meets at another depth, is no noise that more rays would help against. */
+double noise_lasting(const noise_profile *profile, const vertices *mean, double thin, double thin_at_least);
 
 /* Room for so many vertices; what they hold is not kept. */
 dsm_result noise_reserve(noise_profile *profile, size_t count);

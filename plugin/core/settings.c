@@ -19,6 +19,16 @@ void settings_defaults(dsm_settings *settings)
     .cache = 1024 };
 }
 
+void settings_complete(dsm_settings *settings)
+{
+  if (!(settings->accuracy > 0))
+    return;
+  if (!settings->chosen_resolution)
+    settings->resolution[0] = 8192;
+  if (!settings->chosen_samples)
+    settings->samples = 1024;
+}
+
 /* RSC use 16 samples, a factor of 2 to 4, and at least 2 or 3 samples and 2 pixels along a side (4.2). */
 void settings_shadow_map_defaults(dsm_settings *settings)
 {
@@ -200,12 +210,17 @@ static dsm_box box_between(const double corners[6])
 static void apply(dsm_settings *settings, uint32_t word, int chosen, const double *numbers, uint32_t count)
 {
   switch (word) {
+    case WORD_ACCURACY:
+      settings->accuracy = numbers[0];
+      break;
     case WORD_RESOLUTION:
       settings->resolution[0] = (uint32_t)numbers[0];
       settings->resolution[1] = count > 1 ? (uint32_t)numbers[1] : 0;
+      settings->chosen_resolution = 1;
       break;
     case WORD_SAMPLES:
       settings->samples = (uint32_t)numbers[0];
+      settings->chosen_samples = 1;
       break;
     case WORD_TOLERANCE:
       settings->tolerance = numbers[0];

@@ -17,7 +17,7 @@ typedef enum { BLOCK_DEEP_SHADOW, BLOCK_SHADOW_MAP, BLOCK_COUNT } block_kind;
 
 /* Up to WORD_COUNT, indices into settings_table; the others are words of shadow_map alone. */
 enum {
-  WORD_RESOLUTION, WORD_SAMPLES, WORD_TOLERANCE, WORD_FILTER, WORD_BLUR, WORD_BIAS, WORD_BOUNDS, WORD_SAVE_FILE,
+  WORD_ACCURACY, WORD_RESOLUTION, WORD_SAMPLES, WORD_TOLERANCE, WORD_FILTER, WORD_BLUR, WORD_BIAS, WORD_BOUNDS, WORD_SAVE_FILE,
   WORD_LOAD_FILE, WORD_CACHE, WORD_COUNT,
   WORD_MIN_SAMPLES = WORD_COUNT, WORD_SIZE_FACTOR, WORD_MIN_SIZE, WORD_DEPTH_BIAS, WORD_DEPTH_SAMPLES, WORD_PATTERN
 };
@@ -26,8 +26,10 @@ enum {
 
 struct dsm_settings {
   block_kind block;
+  double accuracy;          /* error to aim at; 0: `resolution` and `samples` hold everywhere, and are not bounds */
   uint32_t resolution[2];   /* [1] is 0: square pixels, resolution[0] of them along the longer side */
   uint32_t samples;         /* deep: rays a pixel; shadow_map: depths a look-up */
+  int chosen_resolution, chosen_samples;   /* by the scene */
   double tolerance;         /* or SETTING_AUTOMATIC */
   filter_kind filter;
   double filter_width;      /* full width of the filter's support in map pixels */
@@ -53,6 +55,7 @@ extern const dsm_block settings_blocks[BLOCK_COUNT];
 uint32_t settings_word(block_kind block, uint32_t row);
 
 void settings_defaults(dsm_settings *settings);              /* of deep_shadow */
+void settings_complete(dsm_settings *settings);              /* with `accuracy`, what the scene leaves open is a wide bound */
 void settings_shadow_map_defaults(dsm_settings *settings);
 /* The published functions; dsm.h says what they do. */
 dsm_settings *settings_create(uint32_t block);

@@ -6,6 +6,8 @@
 #include <stddef.h>
 
 const dsm_parameter settings_table[WORD_COUNT] = {
+  [WORD_ACCURACY] = {"accuracy", DSM_NUMBERS, 1, 1, 0, 0, 0.5, 1, 1, NULL, "off",
+    "error of the shadow to aim at: chooses resolution and samples place by place, up to those given (8192 and 1024)"},
   [WORD_RESOLUTION] = {"resolution", DSM_NUMBERS, 1, 2, 1, 1, 16384, 0, 0, NULL, "512",
     "map pixels of a face: along its longer side, or <across, up>"},
   [WORD_SAMPLES] = {"samples", DSM_NUMBERS, 1, 1, 1, 1, 4096, 0, 0, NULL, "16",

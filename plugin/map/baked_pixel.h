@@ -9,6 +9,9 @@ typedef struct {
   size_t first, count;    /* of its vertices */
   int coloured, marked;   /* channels differ; light can grow (then no vertices) */
   double tolerance;       /* error that its compression was allowed */
+  double variance;        /* of its rays' average: the noise that lasts, see noise_lasting; 0 unless `accuracy` wants it */
+  unsigned char need;     /* of a finer level, see tile.h */
+  unsigned char absent;   /* not baked, as no look-up comes here; whoever does is to trace the ray */
 } baked_pixel;
 
 #endif

@@ -18,6 +18,8 @@ typedef struct {
   rgb lost;               /* and in those with colour */
 } view;
 
+static const footprint AT_ONE_PLACE = {0, 0, 1, 0, 0};
+
 /* How much of the light that a pixel lets through in front of a surface its own slope may take away in the
  * middle of it, and how much of all light: the surface takes about a third there. */
 static const double CONTACT = 0.5, OWN = 0.4;
@@ -31,6 +33,12 @@ static const double CLOSE = 0.25;
 /* The coarsest level that a camera ray's footprint may ask for: beyond, an image pixel covers hundreds of map pixels, and
  * a smaller map would do. */
 enum { FOOTPRINT_LEVEL = 5 };
+
+/* With `accuracy` each level that is read costs rays of its own. So long footprints are read coarser, and all of them with pixels of so
+ * many times `accuracy` the area: what an image pixel averages is no sharper for finer ones (measured). */
+enum { REFINED_PROBES = 4,
+       BLIND_LEVELS = 3 };   /* finer than the first, at most, for points without a footprint: media, and what is seen in mirrors */
+static const double COARSER = 200;
 
 /* A stored depth is off by up to half a step of a float, 2^-24 of its distance from the tile's near depth, and in coarser levels by
  * some more. This much keeps a receiver in front of its own step, and far casters in the tile do not make it more. */
@@ -165,12 +173,14 @@ static dsm_result add_bilinear(view *v, uint32_t level, double x, double y, doub
   return result;
 }
 
-/* The planes as the pixels of one level meet them. */
+/* The planes as the pixels of one level meet them. A pixel that is an average of finer ones reaches as far as those; one that is
+ * baked for itself has a filter of its own size. */
 static void see_planes(view *v, const footprint *f, uint32_t level)
 {
   const dsm_map *map = v->worker->map;
   double size = (double)(1u << level), apart = fabs(f->step_x) > fabs(f->step_y) ? fabs(f->step_x) : fabs(f->step_y);
-  receiver_region region = {0.5 * (size - 1) + map->support, size + 0.5 * (f->probes - 1) * apart};
+  double baked = (double)(1u << (level < map->first_level ? level : map->first_level));
+  receiver_region region = {0.5 * (size - baked) + map->support * baked, size + 0.5 * (f->probes - 1) * apart};
   for (uint32_t k = 0; k < v->plane_count; k++)
     v->planes[k] = receiver_plane_seen(&map->projection, v->at, &v->receiver->planes[k], &region, map->settings.bias);
 }
@@ -189,8 +199,101 @@ static dsm_result add_level(view *v, const footprint *f, uint32_t level, double 
   return result;
 }
 
+/* How much the place wants a finer level than this one, from 0 to 1: interpolated, so that no seam shows where levels meet. */
+static dsm_result need_at(view *v, uint32_t level, double x, double y, double *need)
+{
+  const face *f = &v->worker->map->projection.faces[v->at->face];
+  uint32_t width = level_pixels(f->width, level), height = level_pixels(f->height, level);
+  double size = (double)(1u << level);
+  x = x / size - 0.5;
+  y = y / size - 0.5;
+  int32_t i = below(x), j = below(y);
+  double across = x - i, up = y - j;
+  const double weight[4] = {(1 - across) * (1 - up), across * (1 - up), (1 - across) * up, across * up};
+  *need = 0;
+  for (uint32_t k = 0; k < 4; k++) {
+    uint32_t px = (uint32_t)i + (k & 1), py = (uint32_t)j + (k >> 1);
+    if (px >= width || py >= height || weight[k] == 0)
+      continue;
+    tile_key key = {v->at->face, level, px / TILE_SIDE, py / TILE_SIDE};
+    const tile *t;
+    dsm_result result = worker_tile(v->worker, &key, &t);
+    if (result != DSM_OK)
+      return result;
+    *need += weight[k] / 255 * tile_need_at(t, py % TILE_SIDE * TILE_SIDE + px % TILE_SIDE);
+  }
+  return DSM_OK;
+}
+
+/* What one level alone says is lost. */
+static dsm_result read_level(view *v, uint32_t level, double x, double y, double *grey, rgb *coloured)
+{
+  double grey_before = v->lost_grey;
+  rgb before = v->lost;
+  v->lost_grey = 0;
+  v->lost = rgb_grey(0);
+  if (v->plane_count)
+    see_planes(v, &AT_ONE_PLACE, level);
+  dsm_result result = add_bilinear(v, level, x, y, 1);
+  *grey = v->lost_grey;
+  *coloured = v->lost;
+  v->lost_grey = grey_before;
+  v->lost = before;
+  return result;
+}
+
+/* From 0 to 1: whether there can be more to see than this level tells. Where all of the light arrives, or none, there is not: pixels
+ * of which each may be 0 or 1 have the mean m and the variance m (1 - m). */
+static double in_question(const view *v, double grey, rgb coloured)
+{
+  double aim = v->worker->map->settings.accuracy, most = 0;
+  for (int c = 0; c < 3; c++) {
+    double lost = grey + coloured.c[c];
+    most = fmax(most, lost * (1 - lost));
+  }
+  return fmin(1, most / (4 * aim * aim));
+}
+
+/* Reads a map with `accuracy` at one place: from its first level on as fine as the place wants, but no finer than the footprint
+ * asks for. Where a level cannot tell an occluder from the surface that it touches, a finer one may. */
+static dsm_result add_refined(view *v, const footprint *f, double x, double y, double share)
+{
+  for (uint32_t level = v->worker->map->first_level; share > 0; level--) {
+    double need = 0, grey;
+    rgb coloured;
+    dsm_result result = level > f->level ? need_at(v, level, x, y, &need) : DSM_OK;
+    if (result == DSM_OK)
+      result = read_level(v, level, x, y, &grey, &coloured);
+    if (result == DSM_OK)
+      need *= in_question(v, grey, coloured);
+    if (level == f->level + 1)
+      need *= 1 - f->coarser;
+    if (result == DSM_TRACE && need > 0)
+      continue;
+    if (result != DSM_OK)
+      return result;
+    v->lost_grey += share * (1 - need) * grey;
+    for (int c = 0; c < 3; c++)
+      v->lost.c[c] += share * (1 - need) * coloured.c[c];
+    share *= need;
+  }
+  return DSM_OK;
+}
+
+static dsm_result add_probes(view *v, const footprint *f)
+{
+  dsm_result result = DSM_OK;
+  for (uint32_t k = 0; k < f->probes && result == DSM_OK; k++) {
+    double along = k - 0.5 * (f->probes - 1);
+    result = add_refined(v, f, v->at->x + along * f->step_x, v->at->y + along * f->step_y, v->at->weight / f->probes);
+  }
+  return result;
+}
+
 static dsm_result add_footprint(view *v, const footprint *f)
 {
+  if (f->level < v->worker->map->first_level)
+    return add_probes(v, f);
   dsm_result result = add_level(v, f, f->level, v->at->weight * (1 - f->coarser));
   return result == DSM_OK && f->coarser > 0 ? add_level(v, f, f->level + 1, v->at->weight * f->coarser) : result;
 }
@@ -206,8 +309,19 @@ static footprint choose(const view *v, int has_footprint)
     spread_add(&region, &map->projection, v->at, v->receiver->footprint);
     if (alone && most < FOOTPRINT_LEVEL)
       most = FOOTPRINT_LEVEL;
+    if (most < map->first_level)
+      most = map->first_level;
   }
-  return footprint_of(&region, most < levels ? most : levels - 1, alone && has_footprint);
+  if (most >= levels)
+    most = levels - 1;
+  if (map->first_level == 0)
+    return footprint_of(&region, most, alone && has_footprint ? FOOTPRINT_PROBES : 1);
+  footprint f = footprint_of(&region, most, alone && has_footprint ? REFINED_PROBES : 1);
+  double times = has_footprint ? fmin(4, fmax(1, COARSER * map->settings.accuracy)) : 1;
+  f = footprint_scaled(f, times, most);
+  if (!has_footprint && f.level + BLIND_LEVELS < map->first_level)
+    f = (footprint){map->first_level - BLIND_LEVELS, 0, 1, 0, 0};
+  return f;
 }
 
 /* Where the region is too wide to tell an occluder from the surface that it touches, or a part of it is marked, a
@@ -219,7 +333,7 @@ static dsm_result add_wide(view *v, int has_footprint)
     double grey = v->lost_grey;
     rgb lost = v->lost;
     dsm_result result = add_footprint(v, &f);
-    if (result != DSM_TRACE || (f.level == 0 && f.coarser == 0 && f.probes == 1))
+    if (result != DSM_TRACE || (f.level == 0 && f.coarser == 0 && f.probes == 1) || v->worker->map->first_level > 0)
       return result;
     v->lost_grey = grey;
     v->lost = lost;
@@ -243,16 +357,17 @@ static int all_finite(const dsm_receiver *r)
 static double reach_of(const dsm_map *map, int has_footprint)
 {
   uint32_t level = map->blur_level;
+  if (level < map->first_level)
+    level = map->first_level;
   if (has_footprint)
     return footprint_reach(level > FOOTPRINT_LEVEL ? level : FOOTPRINT_LEVEL, 1);
-  return map->blur > 0 ? footprint_reach(level, 0) : 0.5;
+  return level > 0 ? footprint_reach(level, 0) : 0.5;
 }
 
 static dsm_result look_up(dsm_worker *worker, const dsm_receiver *receiver, double out[3])
 {
-  static const footprint bilinear = {0, 0, 1, 0, 0};
   const dsm_map *map = worker->map;
-  int wide = receiver->has_footprint || map->blur > 0;
+  int wide = receiver->has_footprint || map->blur > 0 || map->first_level > 0;
   projected hits[3];
   uint32_t count = projection_find(&map->projection, receiver->point, reach_of(map, receiver->has_footprint != 0), hits);
   view v;
@@ -265,7 +380,7 @@ static dsm_result look_up(dsm_worker *worker, const dsm_receiver *receiver, doub
   for (uint32_t i = 0; i < count; i++) {
     v.at = &hits[i];
     v.own_rounding = hits[i].depth * 0x1p-49;   /* some roundings of a double */
-    dsm_result result = wide ? add_wide(&v, receiver->has_footprint != 0) : add_level(&v, &bilinear, 0, hits[i].weight);
+    dsm_result result = wide ? add_wide(&v, receiver->has_footprint != 0) : add_level(&v, &AT_ONE_PLACE, 0, hits[i].weight);
     if (result != DSM_OK)
       return result;
   }

@@ -88,6 +88,7 @@ dsm_result map_create(const dsm_host *host, const dsm_light *light, const dsm_se
   settings_defaults(&chosen);
   if (settings)
     chosen = *settings;
+  settings_complete(&chosen);
   projection faces = {.count = 0};
   face_fit(&checked, &chosen, &faces);
   return map_create_framed(host, &checked, &chosen, &faces, out);
@@ -107,6 +108,7 @@ dsm_result map_create_framed(const dsm_host *host, const dsm_light *light, const
   map->support = 0.5 * map->settings.filter_width * SUPPORT_SAFETY;
   map->blur = blur_pixels(&map->settings);
   map->blur_level = blur_level(&map->settings);
+  map->first_level = first_level(&map->settings);
   map->projection = *faces;
   if (tile_store_create(&map->store, &map->projection, (uint64_t)(map->settings.cache * MEGABYTE)) != DSM_OK) {
     free(map);

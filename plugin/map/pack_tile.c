@@ -57,7 +57,7 @@ dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, co
   int marked = 0;
   for (int i = 0; i < TILE_PIXELS; i++) {
     const baked_pixel *p = &pixels[i];
-    marked |= p->marked;
+    marked |= p->marked || p->absent;
     if (p->count)
       near_depth = fmin(near_depth, stored->data[p->first].z);
   }
@@ -76,7 +76,8 @@ dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, co
     p->coloured = p->coloured && stays_coloured(v, p->count);
     plan.count[i] = (uint32_t)kept;
     plan.coloured[i] = p->coloured != 0;
-    plan.marked[i] = p->marked != 0;
+    plan.marked[i] = p->marked || p->absent;
+    plan.need[i] = p->need;
   }
   tile *t = tile_create(&plan);
   if (!t)

@@ -2,6 +2,7 @@
 #include "map/tile.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* marked as used for good: nobody writes to them */
 const tile tile_lit = {.size = sizeof(tile), .kind = TILE_LIT, .used = 1};
@@ -31,6 +32,8 @@ static uint8_t layout_of(const tile_plan *plan, uint64_t words)
       layout |= TILE_COLOURED;
     if (plan->marked[i])
       layout |= TILE_MARKED;
+    if (plan->need[i])
+      layout |= TILE_REFINED;
   }
   return layout;
 }
@@ -43,7 +46,7 @@ tile *tile_create(const tile_plan *plan)
   uint8_t layout = layout_of(plan, words);
   size_t table = layout & TILE_WIDE ? (TILE_PIXELS + 1) * sizeof(uint32_t) : (TILE_PIXELS + 2) * sizeof(uint16_t);
   size_t data = sizeof(tile) + table + (layout & TILE_COLOURED ? BITS : 0) + (layout & TILE_MARKED ? BITS : 0);
-  uint64_t size = data + 4 * words;
+  uint64_t size = data + 4 * words + (layout & TILE_REFINED ? TILE_PIXELS : 0);
   tile *t = size <= UINT32_MAX ? calloc(1, size) : NULL;
   if (!t)
     return NULL;
@@ -55,6 +58,8 @@ tile *tile_create(const tile_plan *plan)
     set_bits(t, data - BITS, plan->marked);
   if (layout & TILE_COLOURED)
     set_bits(t, data - (layout & TILE_MARKED ? 2 : 1) * BITS, plan->coloured);
+  if (layout & TILE_REFINED)
+    memcpy((char *)t + size - TILE_PIXELS, plan->need, TILE_PIXELS);
   uint32_t first = 0;
   for (int i = 0; i <= TILE_PIXELS; i++) {
     void *begins = t + 1;

@@ -33,7 +33,8 @@ typedef struct {
 typedef enum { TILE_STORED, TILE_LIT, TILE_FAILED } tile_kind;
 
 enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4,   /* what of the optional parts a tile has */
-       TILE_DEPTHS = 8 };                                    /* alone: no visibility at all, see depth_tile.h */
+       TILE_DEPTHS = 8,                                      /* alone: no visibility at all, see depth_tile.h */
+       TILE_REFINED = 16 };                                  /* the need of each pixel is at the end of the block */
 
 typedef struct {
   double near_depth;      /* scene units from the light */
@@ -50,6 +51,9 @@ typedef struct {
   uint32_t count[TILE_PIXELS];             /* vertices; 0: lit */
   unsigned char coloured[TILE_PIXELS];     /* three values a vertex instead of one */
   unsigned char marked[TILE_PIXELS];       /* light can grow here: nothing stored, trace the ray */
+  /* How much a look-up here wants the next finer level, from 0: it would tell nothing more, to 255: it is to be read instead of
+   * this one; in between both count. */
+  unsigned char need[TILE_PIXELS];
 } tile_plan;
 
 /* Shared by all tiles without a caster, and by all that could not be baked. */
@@ -83,13 +87,19 @@ static inline int tile_is_coloured(const tile *t, uint32_t place)
       && tile_bit(t, t->words - (t->layout & TILE_MARKED ? 2 : 1) * (TILE_PIXELS / 8), place);
 }
 
+/* From 0 to 255; see tile_plan. */
+static inline uint32_t tile_need_at(const tile *t, uint32_t place)
+{
+  return t->layout & TILE_REFINED ? ((const unsigned char *)t)[t->size - TILE_PIXELS + place] : 0;
+}
+
 /* The pixel's vertices; none if it is lit or marked. A pixel of n vertices takes n words of depths and n/2 or 3n/2 words
  * of values, rounded up; so its number of words tells n. */
 static inline visibility tile_visibility(const tile *t, uint32_t place)
 {
   uint32_t first, words;
   visibility v;
-  if (t->layout == 0) {   /* nearly all tiles */
+  if ((t->layout & ~TILE_REFINED) == 0) {   /* nearly all tiles */
     const uint16_t *table = (const uint16_t *)(const void *)(t + 1);
     first = table[place];
     words = table[place + 1] - first;

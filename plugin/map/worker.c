@@ -63,8 +63,15 @@ static dsm_result bake(dsm_worker *worker, const tile_key *key, const tile **out
 {
   if (!worker->maker)
     return DSM_REFUSED;
+  wanted_pixels wanted;
+  memset(&wanted, 1, sizeof wanted);
+  if (key->level < worker->map->first_level) {
+    dsm_result result = wanted_pixels_of(worker, key, &wanted);
+    if (result != DSM_OK)
+      return result;
+  }
   worker->baking = 1;
-  dsm_result result = worker->maker->make(worker->maker, key, out, tally);
+  dsm_result result = worker->maker->make(worker->maker, key, &wanted, out, tally);
   worker->baking = 0;
   return result;
 }
@@ -85,7 +92,7 @@ static dsm_result make_tile(dsm_worker *worker, const tile_key *key, const tile 
     return DSM_OK;
   tile_tally tally;
   memset(&tally, 0, sizeof tally);
-  dsm_result result = key->level > 0 ? pyramid_make(worker, key, out) : bake(worker, key, out, &tally);
+  dsm_result result = key->level > map->first_level ? pyramid_make(worker, key, out) : bake(worker, key, out, &tally);
   if (result == DSM_CANCELLED)
     return result;
   if (result != DSM_OK)

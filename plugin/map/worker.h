@@ -4,12 +4,14 @@
 #define DSM_MAP_WORKER_H
 
 #include "map/map.h"
+#include "map/wanted_pixels.h"
 
 /* Makes a tile that its caller has claimed. The baker is above this room (bake/baker.h) and hands itself in. */
 typedef struct tile_maker {
   /* DSM_OK: *out is a new tile or &tile_lit. DSM_CANCELLED, DSM_NO_MEMORY, …: nothing made. `tally` is
-   * zeroed. */
-  dsm_result (*make)(struct tile_maker *maker, const tile_key *key, const tile **out, tile_tally *tally);
+   * zeroed. Of the pixels those that are `wanted` are enough. */
+  dsm_result (*make)(struct tile_maker *maker, const tile_key *key, const wanted_pixels *wanted, const tile **out,
+                     tile_tally *tally);
   void (*destroy)(struct tile_maker *maker);
 } tile_maker;
 

@@ -207,7 +207,7 @@ bool ShadowMaps::Create(const LightSource& light, const ShadowSettings& settings
 	entry.deep = (string(settings.Block().name) == "deep_shadow");
 	entry.loadPath = settings.loadPath;
 	entry.savePath = settings.savePath;
-	entry.choice = (entry.deep && !settings.IsBlurred() && entry.loadPath.empty() && entry.savePath.empty() && !AlwaysMaps()) ? ShadowMap::kOpen : ShadowMap::kNone;
+	entry.choice = (entry.deep && !settings.IsBlurred() && !settings.IsRefined() && entry.loadPath.empty() && entry.savePath.empty() && !AlwaysMaps()) ? ShadowMap::kOpen : ShadowMap::kNone;
 	entry.cost = 0.0;
 	maps.push_back(entry);
 	return true;

@@ -158,6 +158,8 @@ void Parser::Find_Shadow_Files(ShadowSettings& settings)
 
 	if(!load.empty() && !save.empty())
 		Error("A %s block can have a load_file or a save_file, not both.", settings.Block().name);
+	if(settings.IsRefined() && !(load.empty() && save.empty()))
+		Error("A %s block with accuracy can have neither load_file nor save_file: its map is only as fine as what one picture looks at.", settings.Block().name);
 
 	if(!load.empty())
 	{

@@ -12,7 +12,7 @@ namespace pov
 
 using namespace pov_base;
 
-ShadowSettings::ShadowSettings(const string& name) : block(FindBlock(name)), settings(NULL), blurred(false)
+ShadowSettings::ShadowSettings(const string& name) : block(FindBlock(name)), settings(NULL), blurred(false), refined(false)
 {
 	const dsm_api_table& api = ShadowPlugin::Api();
 
@@ -36,6 +36,8 @@ string ShadowSettings::Set(unsigned int parameter, const char *choice, const dou
 		return why;
 	if((string(block->parameters[parameter].name) == "blur") && (count > 0))
 		blurred = (numbers[0] > 0.0);
+	if(string(block->parameters[parameter].name) == "accuracy")
+		refined = true;
 	return string();
 }
 

@@ -36,13 +36,15 @@ class ShadowSettings
 
 		/// Whether look-ups are softened beyond what one camera ray stands for.
 		bool IsBlurred() const { return blurred; }
+		/// Whether the map is as fine as what looks at it needs, place by place.
+		bool IsRefined() const { return refined; }
 
 		/// Where the two files are; empty: none. The names alone do not tell.
 		string loadPath, savePath;
 	private:
 		const dsm_block *block;
 		dsm_settings *settings;
-		bool blurred;
+		bool blurred, refined;
 
 		ShadowSettings(const ShadowSettings&);
 		ShadowSettings& operator=(const ShadowSettings&);

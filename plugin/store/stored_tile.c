@@ -222,7 +222,7 @@ static void fill_tile(tile *t, const deep_tile *deep, uint32_t channels)
 dsm_result tile_from_deep(const deep_tile *deep, uint32_t channels, const tile_record *record, uint64_t number,
                           const tile **out)
 {
-  tile_plan plan;
+  tile_plan plan = {.count = {0}};
   *out = NULL;
   if (channels == DEPTH_CHANNELS)
     return depths_from_flat(deep, record, number, out);

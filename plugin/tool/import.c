@@ -73,9 +73,10 @@ static dsm_result import_pixel(importer *m, uint32_t place)
   return result;
 }
 
-static dsm_result make(tile_maker *base, const tile_key *key, const tile **out, tile_tally *tally)
+static dsm_result make(tile_maker *base, const tile_key *key, const wanted_pixels *wanted, const tile **out, tile_tally *tally)
 {
   importer *m = (importer *)base;
+  (void)wanted;
   m->stored.count = 0;
   dsm_result result = gather(m, key);
   for (uint32_t place = 0; place < TILE_PIXELS && result == DSM_OK; place++)

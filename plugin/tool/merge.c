@@ -25,9 +25,10 @@ typedef struct {
   merge_scratch scratch;
 } merger;
 
-static dsm_result make(tile_maker *base, const tile_key *key, const tile **out, tile_tally *tally)
+static dsm_result make(tile_maker *base, const tile_key *key, const wanted_pixels *wanted, const tile **out, tile_tally *tally)
 {
   merger *m = (merger *)base;
+  (void)wanted;
   dsm_result result = DSM_OK;
   uint32_t got = 0;
   for (; got < m->in.count && result == DSM_OK; got++)

@@ -42,7 +42,7 @@ typedef struct {
 /* Three vertices in the pixel that is to be spoilt; in the other tile, of which only 4 x 4 pixels are on the face, one in
  * another pixel. */
 static void make_content(content *c) {
-  tile_plan plan;
+  tile_plan plan = {.count = {0}};
   memset(&plan, 0, sizeof plan);
   plan.count[PLACE] = 3;
   c->tiles[0] = tile_create(&plan);
@@ -143,7 +143,7 @@ static void nothing_lies_outside_a_face(void **state) {
   content c;
   make_content(&c);
   tile_destroy(c.tiles[1]);
-  tile_plan plan;
+  tile_plan plan = {.count = {0}};
   memset(&plan, 0, sizeof plan);
   plan.count[TILE_PIXELS - 1] = 1;
   c.tiles[1] = tile_create(&plan);

@@ -58,7 +58,8 @@ static inline int is_claimed_now(dsm_map *map, const tile_key *key) {
   return found;
 }
 
-static inline dsm_result make_up(tile_maker *base, const tile_key *key, const tile **out, tile_tally *tally) {
+static inline dsm_result make_up(tile_maker *base, const tile_key *key, const wanted_pixels *wanted, const tile **out, tile_tally *tally) {
+  (void)wanted;
   fake_maker *maker = (fake_maker *)(void *)base;
   if (tally->rays || key->level || !is_claimed_now(maker->worker->map, key)) abort();
   atomic_fetch_add(&maker->sum->made[key->y * SIDE + key->x], 1);

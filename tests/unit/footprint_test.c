@@ -30,7 +30,7 @@ static void up_to_a_pixel_nothing_changes(void **state) {
   const double sides[] = {0, 1e-9, 0.3, 0.7};
   for (int i = 0; i < 4; ++i) {
     spread s = spread_of_square(sides[i]);
-    footprint f = footprint_of(&s, 10, 1);
+    footprint f = footprint_of(&s, 10, FOOTPRINT_PROBES);
     assert_true(f.level == 0 && f.coarser == 0 && f.probes == 1 && f.step_x == 0 && f.step_y == 0);
   }
 }
@@ -43,7 +43,7 @@ static void variances_match(void **state) {
     double size = rng_scale(&r, 0.5, 200), ratio = rng_scale(&r, 1, 4), angle = rng_between(&r, 0, 6.3);
     double a[2] = {size * ratio * cos(angle), size * ratio * sin(angle)}, b[2] = {-size * sin(angle), size * cos(angle)};
     spread s = parallelogram(a, b);
-    footprint f = footprint_of(&s, 15, 1);
+    footprint f = footprint_of(&s, 15, FOOTPRINT_PROBES);
     double shorter = fmax(size * size / 12, PIXEL), longer = fmax(size * ratio * size * ratio / 12, PIXEL);
     assert_seeded(&r, fabs(across(&f) - (0.25 + shorter - PIXEL)) < 1e-9 * across(&f));
     /* what less than half a pixel would add is left out; the largest step leaves the rest */
@@ -59,16 +59,16 @@ static void variances_match(void **state) {
 static void limits(void **state) {
   (void)state;
   spread needle = parallelogram((double[]){400, 0}, (double[]){0, 1});
-  footprint f = footprint_of(&needle, 15, 1);
+  footprint f = footprint_of(&needle, 15, FOOTPRINT_PROBES);
   assert_true(f.probes == FOOTPRINT_PROBES || f.probes == FOOTPRINT_PROBES - 1);
   assert_true(fabs(f.step_x) <= 2 * sqrt(4 * across(&f)) && along(&f) > 0.9 * 400 * 400 / 12);
-  f = footprint_of(&needle, 15, 0);
+  f = footprint_of(&needle, 15, 1);
   assert_true(f.probes == 1 && fabs(across(&f) - (0.25 + 400.0 * 400 / 12 - PIXEL)) < 1);
   for (uint32_t most = 0; most < MAX_LEVELS; ++most)
     for (int stretched = 0; stretched < 2; ++stretched)
       for (double size = 0.1; size < 1e300; size *= 7.3) {
         spread s = parallelogram((double[]){size, 0.2 * size}, (double[]){0.3, 0.1 * size});
-        f = footprint_of(&s, most, stretched);
+        f = footprint_of(&s, most, stretched ? FOOTPRINT_PROBES : 1);
         assert_true(f.level + (f.coarser > 0) <= most);
         double reach = (f.coarser > 0 ? 2 : 1) * ldexp(1.5, (int)f.level)
                      + 0.5 * (f.probes - 1) * fmax(fabs(f.step_x), fabs(f.step_y));
@@ -77,7 +77,7 @@ static void limits(void **state) {
   const double odd[] = {NAN, INFINITY};
   for (int i = 0; i < 2; ++i) {
     spread s = {odd[i], odd[i], 1};
-    f = footprint_of(&s, 7, 1);
+    f = footprint_of(&s, 7, FOOTPRINT_PROBES);
     assert_true(f.level <= 7 && f.coarser >= 0 && f.coarser < 1 && f.probes >= 1 && isfinite(f.step_x) && isfinite(f.step_y));
   }
 }
@@ -88,7 +88,7 @@ static void continuous(void **state) {
   double before_across = 0, before_along = 0;
   for (double size = 0.2; size < 300; size *= 1.001) {
     spread s = parallelogram((double[]){2.3 * size, 0}, (double[]){0, size});
-    footprint f = footprint_of(&s, 15, 1);
+    footprint f = footprint_of(&s, 15, FOOTPRINT_PROBES);
     if (before_across > 0) {
       assert_true(across(&f) >= before_across * (1 - 1e-12) && across(&f) <= before_across * 1.01);
       assert_true(fabs(along(&f) - before_along) <= 0.35 * across(&f));

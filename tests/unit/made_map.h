@@ -175,7 +175,7 @@ static inline const tile *random_depths(rng *r) {
 static inline const tile *random_tile(rng *r, int coloured, uint32_t most_vertices) {
   if (rng_below(r, 4) == 0) return &tile_lit;
   if (coloured == MADE_DEPTHS) return random_depths(r);
-  tile_plan plan;
+  tile_plan plan = {.count = {0}};
   int marks = rng_below(r, 4) == 0, colours = coloured && rng_below(r, 2);
   for (int i = 0; i < TILE_PIXELS; ++i) {
     plan.marked[i] = marks && rng_below(r, 10) == 0;

@@ -129,7 +129,7 @@ static void all_values_survive(void **state) {
       made_map_free(&m);
       m = made_map_random(&r, 1, 1, coloured, 1);
     }
-    tile_plan plan;
+    tile_plan plan = {.count = {0}};
     memset(&plan, 0, sizeof plan);
     for (int i = 0; i < TILE_PIXELS; ++i) {
       plan.count[i] = 256;
@@ -177,7 +177,7 @@ static void every_bit_counts(void **state) {
 
 static void impossible_tiles_are_refused(void **state) {
   (void)state;
-  tile_plan plan;
+  tile_plan plan = {.count = {0}};
   memset(&plan, 0, sizeof plan);
   plan.count[7] = 3;
   plan.count[9] = 2;

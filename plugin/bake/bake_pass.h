@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+/*
+ * Some pixels of a tile, all from the same number of rays:
+ *
+ *   pixels --> rays --> host->trace --> events --> bake_pixel
+ *              a batch of whole pixels at a time
+ */
+#ifndef DSM_BAKE_BAKE_PASS_H
+#define DSM_BAKE_BAKE_PASS_H
+
+#include "bake/bake_pixel.h"
+#include "core/pixel_sample.h"
+#include "map/tile.h"
+
+/* Memory that a worker keeps from tile to tile. Zero-initialise. */
+typedef struct {
+  dsm_ray *rays;
+  pixel_point *path;
+  uint32_t room_rays, room_path, path_samples;
+  dsm_sink sink;
+  pixel_scratch pixel;
+  vertices stored;
+  baked_pixel pixels[TILE_PIXELS];   /* vertices in `stored` */
+} bake_scratch;
+
+/* Which pixels: places as in tile.h. */
+typedef struct { uint8_t place[TILE_PIXELS]; uint32_t count; } place_list;
+_Static_assert(TILE_PIXELS <= 256, "a place is a byte");
+
+/* Bakes these pixels of a tile from `samples` rays each into scratch->pixels. DSM_OK, DSM_CANCELLED if `pause` asked for it,
+ * DSM_NO_MEMORY, or what `trace` returned. Adds to `tally`. */
+dsm_result bake_pass(const bake_job *job, bake_scratch *scratch, const tile_key *key, uint32_t samples,
+                     const place_list *places, tile_tally *tally);
+void bake_scratch_free(bake_scratch *scratch);
+
+#endif

@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "bake/tile_need.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Depths at which pixels are compared: so many evenly apart, as many that have the same number of vertices between them, and
+ * behind everything. */
+enum { EVEN = 8, RANKED = 8, DEPTHS = EVEN + RANKED + 1, MOST_RANKED = 512 };
+
+/* A bend b of three pixels in a row is an error of about b / sqrt(8): where a step between two values lies in a pixel, what
+ * interpolation misses, and what the bends of that pixel and its neighbours add up to, have this ratio. */
+static const double SQUARED_BENDS = 8;
+
+/* As for the noise: of the root mean square over a picture, what is bent may have more. */
+static const double BEND_SHARE = 2;
+
+/* Of the variance that noise is thought to have. A few rays that an edge parts look as if they knew nothing of each other, though they
+ * are stratified: the rest of what they bend is taken for an edge. */
+static const double NOISE_KNOWN = 0.1;
+
+/* Less light than this behind everything: the last surface is opaque, a ground on which shadows are seen. */
+static const double DARK = 0.02;
+
+/* Pixel widths in front of it: the slanted ground itself takes about one. */
+static const double ABOVE_GROUND[] = {1.5, 3, 6};
+enum { HEIGHTS = sizeof ABOVE_GROUND / sizeof *ABOVE_GROUND };
+
+/* The bounds of visibility around one depth, of all pixels, in one channel. */
+typedef struct { double low[TILE_PIXELS], high[TILE_PIXELS]; } layer;
+
+static int compare(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Depths to compare at; returns how many. */
+static uint32_t choose_depths(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, double depths[DEPTHS])
+{
+  double near_depth = INFINITY, far_depth = -INFINITY, ranked[MOST_RANKED];
+  size_t count = 0, taken = 0, seen = 0;
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    count += pixels[i].count;
+  if (count == 0)
+    return 0;
+  size_t stride = (count + MOST_RANKED - 1) / MOST_RANKED;
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    for (size_t k = 0; k < pixels[i].count; k++, seen++) {
+      double z = stored->data[pixels[i].first + k].z;
+      near_depth = fmin(near_depth, z);
+      far_depth = fmax(far_depth, z);
+      if (seen % stride == 0)
+        ranked[taken++] = z;
+    }
+  qsort(ranked, taken, sizeof *ranked, compare);
+  for (uint32_t k = 0; k < EVEN; k++)
+    depths[k] = near_depth + (far_depth - near_depth) * (k + 0.5) / EVEN;
+  for (uint32_t k = 0; k < RANKED; k++)
+    depths[EVEN + k] = ranked[(size_t)((k + 0.5) / RANKED * (double)taken)];
+  depths[EVEN + RANKED] = INFINITY;
+  return DEPTHS;
+}
+
+static double width_at(const need_limits *limits, double z)
+{
+  return limits->width * z + limits->width_at_least;
+}
+
+static void fill_layer(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits, double z,
+                       int channel, layer *out)
+{
+  double thick = z < INFINITY ? width_at(limits, z) : 0;
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    const vertex *v = stored->data + pixels[i].first;
+    size_t n = pixels[i].count;
+    out->low[i] = n ? vertices_at(v, n, z + thick).c[channel] : 1;
+    out->high[i] = n ? vertices_at(v, n, z - thick).c[channel] : 1;
+  }
+}
+
+/* What is left so many pixel widths in front of the ground, where there is one: then low == high. Elsewhere anything goes. */
+static void fill_above_ground(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits,
+                              double widths, int channel, layer *out)
+{
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    const vertex *v = stored->data + pixels[i].first;
+    size_t n = pixels[i].count;
+    out->low[i] = 0;
+    out->high[i] = 1;
+    if (n && rgb_max(v[n - 1].v) < DARK)
+      out->low[i] = out->high[i] = vertices_at(v, n, v[n - 1].z - widths * width_at(limits, v[n - 1].z)).c[channel];
+  }
+}
+
+static int is_known(const baked_pixel *p)
+{
+  return !p->marked && !p->absent;
+}
+
+/* The square of the least bend that values between the bounds can have, less what noise is expected to make of it. */
+static double squared_bend(const baked_pixel pixels[TILE_PIXELS], const layer *l, uint32_t before, uint32_t here, uint32_t after)
+{
+  double hollow = l->low[before] + l->low[after] - 2 * l->high[here];
+  double hill = 2 * l->low[here] - l->high[before] - l->high[after];
+  double bend = fmax(0, fmax(hollow, hill));
+  return bend * bend - NOISE_KNOWN * (pixels[before].variance + 4 * pixels[here].variance + pixels[after].variance);
+}
+
+/* Of each pixel in both directions, where it has two neighbours in the tile. */
+static void measure(const baked_pixel pixels[TILE_PIXELS], const layer *l, double bends[TILE_PIXELS])
+{
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    bends[i] = 0;
+    for (uint32_t axis = 0; axis < 2; axis++) {
+      uint32_t at = axis ? i / TILE_SIDE : i % TILE_SIDE, step = axis ? TILE_SIDE : 1;
+      if (at == 0 || at == TILE_SIDE - 1)
+        continue;
+      if (is_known(&pixels[i - step]) && is_known(&pixels[i]) && is_known(&pixels[i + step]))
+        bends[i] += squared_bend(pixels, l, i - step, i, i + step);
+    }
+  }
+}
+
+/* The mean of a known pixel and its neighbours in the tile. */
+static double around(const baked_pixel pixels[TILE_PIXELS], const double values[TILE_PIXELS], uint32_t place)
+{
+  uint32_t x = place % TILE_SIDE, y = place / TILE_SIDE;
+  double sum = 0, count = 0;
+  for (uint32_t j = y > 0 ? y - 1 : 0; j <= y + 1 && j < TILE_SIDE; j++)
+    for (uint32_t i = x > 0 ? x - 1 : 0; i <= x + 1 && i < TILE_SIDE; i++) {
+      int known = is_known(&pixels[j * TILE_SIDE + i]);
+      sum += known ? values[j * TILE_SIDE + i] : 0;
+      count += known;
+    }
+  return sum / count;
+}
+
+static int has_colour(const baked_pixel pixels[TILE_PIXELS])
+{
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    if (pixels[i].coloured)
+      return 1;
+  return 0;
+}
+
+/* Whether a look-up next to the pixel can meet anything but full light or none. */
+static int is_in_question(const layer *l, uint32_t place, double aim)
+{
+  uint32_t x = place % TILE_SIDE, y = place / TILE_SIDE;
+  double low = 1, high = 0;
+  for (uint32_t j = y > 0 ? y - 1 : 0; j <= y + 1 && j < TILE_SIDE; j++)
+    for (uint32_t i = x > 0 ? x - 1 : 0; i <= x + 1 && i < TILE_SIDE; i++) {
+      low = fmin(low, l->low[j * TILE_SIDE + i]);
+      high = fmax(high, l->high[j * TILE_SIDE + i]);
+    }
+  return high > aim * aim && low < 1 - aim * aim;
+}
+
+/* Keeps the largest of what bends around each pixel. */
+static void keep_largest(const baked_pixel pixels[TILE_PIXELS], const layer *l, double aim, double most[TILE_PIXELS])
+{
+  double bends[TILE_PIXELS];
+  measure(pixels, l, bends);
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    if (is_known(&pixels[i]) && is_in_question(l, i, aim))
+      most[i] = fmax(most[i], around(pixels, bends, i) / SQUARED_BENDS);
+}
+
+void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits)
+{
+  double depths[DEPTHS], most[TILE_PIXELS] = {0}, share = BEND_SHARE * limits->aim, least = share * share;
+  uint32_t count = choose_depths(pixels, stored, depths);
+  int channels = has_colour(pixels) ? 3 : 1;
+  layer l;
+  for (int c = 0; c < channels && count > 0; c++) {
+    for (uint32_t k = 0; k < count; k++) {
+      fill_layer(pixels, stored, limits, depths[k], c, &l);
+      keep_largest(pixels, &l, limits->aim, most);
+    }
+    for (uint32_t k = 0; k < HEIGHTS; k++) {
+      fill_above_ground(pixels, stored, limits, ABOVE_GROUND[k], c, &l);
+      keep_largest(pixels, &l, limits->aim, most);
+    }
+  }
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    pixels[i].need = pixels[i].marked ? 255 : (unsigned char)(255 * fmax(0, fmin(1, (most[i] - least) / least)) + 0.5);
+}
