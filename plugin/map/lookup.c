@@ -38,7 +38,7 @@ enum { FOOTPRINT_LEVEL = 5 };
  * many times `accuracy` the area: what an image pixel averages is no sharper for finer ones (measured). */
 enum { REFINED_PROBES = 4,
        BLIND_LEVELS = 3 };   /* finer than the first, at most, for points without a footprint: media, and what is seen in mirrors */
-static const double COARSER = 200;
+static const double COARSER = 150;
 
 /* A stored depth is off by up to half a step of a float, 2^-24 of its distance from the tile's near depth, and in coarser levels by
  * some more. This much keeps a receiver in front of its own step, and far casters in the tile do not make it more. */
@@ -317,7 +317,7 @@ static footprint choose(const view *v, int has_footprint)
   if (map->first_level == 0)
     return footprint_of(&region, most, alone && has_footprint ? FOOTPRINT_PROBES : 1);
   footprint f = footprint_of(&region, most, alone && has_footprint ? REFINED_PROBES : 1);
-  double times = has_footprint ? fmin(4, fmax(1, COARSER * map->settings.accuracy)) : 1;
+  double times = has_footprint ? fmin(4, COARSER * map->settings.accuracy) : 1;
   f = footprint_scaled(f, times, most);
   if (!has_footprint && f.level + BLIND_LEVELS < map->first_level)
     f = (footprint){map->first_level - BLIND_LEVELS, 0, 1, 0, 0};

@@ -11,12 +11,14 @@
 #include "bake/smooth_noise.h"
 #include "core/transmittance.h"
 
+static wanted_pixels all_wanted;   /* set in main */
+
 static const tile *bake(stage *s, uint32_t x, uint32_t y, bake_scratch *scratch, tile_tally *tally) {
   bake_job job = {&s->map->host, &s->w, &s->map->projection, &s->map->settings};
   tile_key key = {0, 0, x, y};
   const tile *t = NULL;
   *tally = (tile_tally){0};
-  assert_int_equal(bake_tile(&job, scratch, &key, &t, tally), DSM_OK);
+  assert_int_equal(bake_tile(&job, scratch, &key, &all_wanted, &t, tally), DSM_OK);
   assert_non_null(t);
   return t;
 }
@@ -170,10 +172,10 @@ static void batches_are_whole_pixels(void **state) {
     bake_scratch scratch = {0};
     tile_tally tally = {0};
     const tile *t;
-    assert_int_equal(bake_tile(&job, &scratch, &(tile_key){0, 0, 0, 0}, &t, &tally), DSM_OK);
+    assert_int_equal(bake_tile(&job, &scratch, &(tile_key){0, 0, 0, 0}, &all_wanted, &t, &tally), DSM_OK);
     assert_true(b.most == most[k] && b.calls == calls[k] && b.rays == 256u * count[k]);
     b = (batches){0};
-    assert_int_equal(bake_tile(&job, &scratch, &(tile_key){0, 0, 1, 1}, &t, &tally), DSM_OK);
+    assert_int_equal(bake_tile(&job, &scratch, &(tile_key){0, 0, 1, 1}, &all_wanted, &t, &tally), DSM_OK);
     assert_true(b.rays == 16u * count[k]);   /* 4 x 4 pixels of that tile are on the face */
     bake_scratch_free(&scratch);
     stage_close(&s);
@@ -252,6 +254,7 @@ static void noise_is_measured(void **state) {
 }
 
 int main(void) {
+  memset(&all_wanted, 1, sizeof all_wanted);
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pixels_are_their_rays_average),
     cmocka_unit_test(slanted_glass_is_small_and_exact),
