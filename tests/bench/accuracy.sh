@@ -72,6 +72,6 @@ for scene in "${@:-glass hairball cloud cloud_pipes}"; do for scene in $scene; d
   : >"$out/$scene.txt"
   for aim in $AIMS; do line "$scene" "accuracy $aim" Declare=Accuracy="$aim"; done
   # shellcheck disable=SC2046
-  for step in $FIXED; do line "$scene" "fixed $step" $(fixed "$step"); done
+  for step in $FIXED; do [ "$step" = "${!reference}" ] || line "$scene" "fixed $step" $(fixed "$step"); done
   verdict "$scene"
 done; done
