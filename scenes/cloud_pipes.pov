@@ -8,6 +8,7 @@
 // Declare=White=0       1: black background, white light, all surfaces matte white and no glow, so that the picture shows
 //                       the light that shadows leave
 // Declare=Resolution=512 Declare=Samples=16   of the map
+// Declare=Accuracy=0.01 in place of these two; Declare=Bound=8192: the finest resolution that it may use
 // Declare=Tolerance=-1 Declare=Blur=0   as in deep_shadow; -1: automatic
 // Declare=File=0        1: the map is saved as cloud_pipes1.exr; 2: it is loaded from there
 // Declare=Pcf=0         1: shadow_map (percentage closer filtering) in place of deep_shadow; then NumSamples in place of
@@ -35,7 +36,12 @@ camera {
 
 // What stands in a light's block: the same words for both kinds of map, but for those that only one has.
 #macro Words(Number)
-  #ifdef (Accuracy) accuracy Accuracy #ifdef (Bound) resolution Bound #end #else resolution Resolution samples (Pcf ? NumSamples : Samples) #end
+  #ifdef (Accuracy)
+    accuracy Accuracy
+    #ifdef (Bound) resolution Bound #end
+  #else
+    resolution Resolution samples (Pcf ? NumSamples : Samples)
+  #end
   #if (File = 1) save_file concat("cloud_pipes", str(Number, 0, 0), ".exr") #end
   #if (File = 2) load_file concat("cloud_pipes", str(Number, 0, 0), ".exr") #end
   #if (Pcf)

@@ -5,6 +5,7 @@
 //
 // Declare=White=0      1: the glass is not seen and the floor is white, so that the picture shows the shadows alone
 // Declare=Resolution=1024 Declare=Samples=16   of the two maps
+// Declare=Accuracy=0.01 in place of these two; Declare=Bound=8192: the finest resolution that it may use
 // Declare=Tolerance=-1 Declare=Blur=0   as in deep_shadow; -1: automatic
 // Declare=File=0       1: the maps are saved as glass1.exr, ...; 2: they are loaded from there
 // Declare=Pcf=0        1: shadow_map (percentage closer filtering) in place of deep_shadow; then NumSamples in place of
@@ -29,7 +30,12 @@ camera {
 
 // What stands in a light's block: the same words for both kinds of map, but for those that only one has.
 #macro Words(Number)
-  #ifdef (Accuracy) accuracy Accuracy #ifdef (Bound) resolution Bound #end #else resolution Resolution samples (Pcf ? NumSamples : Samples) #end
+  #ifdef (Accuracy)
+    accuracy Accuracy
+    #ifdef (Bound) resolution Bound #end
+  #else
+    resolution Resolution samples (Pcf ? NumSamples : Samples)
+  #end
   #if (File = 1) save_file concat("glass", str(Number, 0, 0), ".exr") #end
   #if (File = 2) load_file concat("glass", str(Number, 0, 0), ".exr") #end
   #if (Pcf)

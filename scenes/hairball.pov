@@ -6,6 +6,7 @@
 // Declare=Hairs=50000   number of hairs
 // Declare=Curl=1        0: straight hairs of one cylinder each
 // Declare=Resolution=512 Declare=Samples=4   of the three maps
+// Declare=Accuracy=0.01 in place of these two; Declare=Bound=8192: the finest resolution that it may use
 // Declare=White=0       1: everything matte white, so that the picture shows the shadows alone
 // Declare=Close=0       1: the first light alone, and its shadow on the floor from nearby (their figure 7)
 // Declare=Tolerance=-1 Declare=Blur=0 Declare=Cache=1024   as in deep_shadow; -1: automatic
@@ -43,7 +44,13 @@ camera {
 
 // What stands in a light's block: the same words for both kinds of map, but for those that only one has.
 #macro Words(Number)
-  #ifdef (Accuracy) accuracy Accuracy #ifdef (Bound) resolution Bound #end #else resolution Resolution samples (Pcf ? NumSamples : Samples) #end cache Cache
+  #ifdef (Accuracy)
+    accuracy Accuracy
+    #ifdef (Bound) resolution Bound #end
+  #else
+    resolution Resolution samples (Pcf ? NumSamples : Samples)
+  #end
+  cache Cache
   #if (File = 1) save_file concat("hairball", str(Number, 0, 0), ".exr") #end
   #if (File = 2) load_file concat("hairball", str(Number, 0, 0), ".exr") #end
   #if (Pcf)

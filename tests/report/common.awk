@@ -41,5 +41,6 @@ function title(scene) {
 }
 function called(method) {
   return method == "raytraced" ? "ray tracing" : method == "deep" ? "deep map, baked in this render" : \
-    method == "baked" ? "deep map from a file" : method == "map" ? "PCF" : method
+    method == "baked" ? "deep map from a file" : method == "map" ? "PCF" : \
+    method == "accuracy" ? "deep map with accuracy" : method
 }

@@ -4,6 +4,7 @@ function lines(scene, other, what,  a, b, c, k, steps, e, s, t, u, DE, DT, OE, O
   a = envelope(scene, "deep", what, DE, DT)
   b = envelope(scene, other, what, OE, OT)
   c = envelope(scene, "baked", what, BE, BT)
+  if (!b && other == "accuracy") return   # not of this scene
   first = title(scene) "|deep against " called(other) "|" (what == "total" ? "all" : "shadows")
   if (!a || !b) { print cells(first "|<em>not available</em>||||"); return }
   common(DE, a, OE, b)
@@ -18,8 +19,9 @@ function lines(scene, other, what,  a, b, c, k, steps, e, s, t, u, DE, DT, OE, O
 END {
   print "<table><thead>" cells("scene|compared|time|at RMSE|deep s|deep from a file s|other s|other / deep", "th") "</thead><tbody>"
   split("hair floor cloud pipes glass sphere", scenes, " ")
+  split("raytraced map accuracy", others, " ")
   for (i = 1; i <= 6; i++) {
-    for (k = 1; k <= 2; k++) { lines(scenes[i], k == 1 ? "raytraced" : "map", "total"); lines(scenes[i], k == 1 ? "raytraced" : "map", "shadow") }
+    for (k = 1; k <= 3; k++) { lines(scenes[i], others[k], "total"); lines(scenes[i], others[k], "shadow") }
   }
   print "</tbody></table>"
 }

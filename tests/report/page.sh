@@ -63,6 +63,7 @@ full of hair, glass or cloud, and noisy where shadows are finer than the rays. <
 shadow map) looks from the light once and keeps one depth for each map pixel; a point compares its own depth with some of those around it, and the
 share that lies before it is its shadow. <strong>A deep shadow map</strong> also looks from the light once, but keeps for each map pixel how much light is left
 at <em>every</em> depth: the mean of many light rays, compressed. One look-up then gives a shadow already filtered, through hair, glass and cloud alike.
+With the word <code>accuracy</code> a deep map chooses resolution and rays place by place, for an error to aim at.
 A map costs its baking and its memory; it blurs what is smaller than its pixels; and it can be kept in a file for the next frame.</p>
 TEXT
   table -f "$here/envelope.awk" -f "$here/words.awk"
@@ -85,12 +86,12 @@ time of the same picture with <code>Shadow_Method=none</code>. All numbers are i
 TEXT
   for scene in $scenes; do
     echo "<h3>$(table -v s="$scene" -f <(echo 'END { print title(s) }'))</h3><div class='plots'>"
-    files=("$scene-raytraced" "$scene-deep" "$scene-baked" "$scene-map")
+    files=("$scene-raytraced" "$scene-deep" "$scene-accuracy" "$scene-baked" "$scene-map")
     plot total "$scene" "${files[@]}"
     plot shadow "$scene" "${files[@]}"
     echo '</div>'
     table -v scene="$scene" -f "$here/speed.awk"
-    for method in raytraced deep map; do
+    for method in raytraced deep accuracy map; do
       name=$(last "$scene" "$method")
       [ -z "$name" ] || pair "$name" "reference/$scene" "$(table -v m=$method -f <(echo 'END { print called(m) }')), its last setting"
     done
@@ -106,7 +107,7 @@ TEXT
   echo '<h2>Memory and file size against error</h2>'
   for scene in $scenes; do
     echo "<h3>$(table -v s="$scene" -f <(echo 'END { print title(s) }'))</h3><div class='plots'>"
-    plot memory "$scene" "$scene-deep" "$scene-map"
+    plot memory "$scene" "$scene-deep" "$scene-accuracy" "$scene-map"
     plot file "$scene" "$scene-baked"
     echo '</div>'
   done

@@ -26,14 +26,14 @@ picture() {  # $1: name, $2: seconds of a run, $3: kind, $4: scene, $5: picture,
 }
 
 # One scene's speed against error. Words of a ladder's rung: DEPTH,MS for ray tracing, DEPTH,MS,RESOLUTION,SAMPLES for deep,
-# DEPTH,MS,RESOLUTION,SAMPLES,SIZE_FACTOR for PCF; MS is 0 where there are no media.
+# DEPTH,MS,ACCURACY for a deep map with that word, DEPTH,MS,RESOLUTION,SAMPLES,SIZE_FACTOR for PCF; MS is 0 where there are no media.
 speed() {  # $1: scene's short name, $2: file, $3: W:H, $4: X:Y:w:h, $5: OVER:DEPTH:MOVE:MS of the truth, $6: its seconds, $7: options
   local name=$1 file=$2 size=$3 part=$4 over depth move ms options=$7 d m r s f o seen=' '
   local look
   IFS=: read -r over depth move ms <<<"$5"
   line "reference/$name" "$6" 1 reference "$file" "$size:$depth:$part" - - "$over $move $ms $options"
   own() { o=$options; [ "$m" = 0 ] || o="$o Declare=MS=$m"; look=$size:$d:$part; }
-  for rung in $traced $deep $map; do
+  for rung in $traced $deep $accuracy $map; do
     IFS=, read -r d m _ <<<"$rung"
     case $seen in *" $d,$m "*) continue ;; esac
     seen="$seen$d,$m "
@@ -56,6 +56,13 @@ speed() {  # $1: scene's short name, $2: file, $3: W:H, $4: X:Y:w:h, $5: OVER:DE
     line "bake/$name/deep/$r,$s" "$(awk -v a="$bake" -v s="$start" 'BEGIN { print a + s }')" 1 bake "$file" 16:12:1:0:0:16:12 - - "$o Declare=File=1"
     picture "speed/$name/baked/$rung" "$(cost "$none_cost" "$d" "$m" | awk '{ print 1.5 * $1 }')" \
       picture "$file" "$look" "reference/$name" "bake/$name/deep/$r,$s" "$o Declare=File=2"
+  done
+  for rung in $accuracy; do
+    IFS=, read -r d m r <<<"$rung"
+    own
+    # some 10,000 light rays for 1 / ACCURACY
+    picture "speed/$name/accuracy/$rung" "$(awk -v c="$bake_cost" -v a="$r" -v b="$(cost "$none_cost" "$d" "$m")" 'BEGIN { print c * 0.01 / a + 2 * b }')" \
+      picture "$file" "$look" "reference/$name" - "$o Declare=Accuracy=$r"
   done
   for rung in $map; do
     IFS=, read -r d m r s f <<<"$rung"

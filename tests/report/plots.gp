@@ -8,9 +8,9 @@ set format xy "%g"
 set grid lc rgb "#dddddd"
 set key below samplen 2
 set border lc rgb "#555555"
-methods = "none raytraced deep baked map"
-title_of(m) = m eq "raytraced" ? "ray tracing" : m eq "deep" ? "deep, baked in this render" : m eq "baked" ? "deep, from a file" : "PCF"
-colour(m) = m eq "raytraced" ? "#444444" : m eq "deep" ? "#0060c0" : m eq "baked" ? "#30a0e0" : "#d06000"
+methods = "none raytraced deep accuracy baked map"
+title_of(m) = m eq "raytraced" ? "ray tracing" : m eq "deep" ? "deep, baked in this render" : m eq "baked" ? "deep, from a file" : m eq "accuracy" ? "deep, accuracy" : "PCF"
+colour(m) = m eq "raytraced" ? "#444444" : m eq "deep" ? "#0060c0" : m eq "baked" ? "#30a0e0" : m eq "accuracy" ? "#20a040" : "#d06000"
 file(m) = data."/".scene."-".m.".dat"
 # Methods of whom there is a point.
 there(list) = system("for m in ".list."; do test -s '".data."/".scene."-'$m.dat && echo $m; done")
@@ -18,14 +18,14 @@ there(list) = system("for m in ".list."; do test -s '".data."/".scene."-'$m.dat 
 if (what eq "total" || what eq "shadow") {
   set xlabel "RMSE"
   set ylabel what eq "total" ? "seconds, map and picture" : "seconds of the shadows alone"
-  shown = there("raytraced deep baked map")
+  shown = there("raytraced deep accuracy baked map")
   plot for [m in shown] file(m) using 1:(what eq "total" ? $2 : $3) with linespoints lw 2 pt 7 ps 0.6 lc rgb colour(m) title title_of(m)
 }
 if (what eq "memory" || what eq "file") {
   set xlabel "RMSE"
   set ylabel what eq "memory" ? "megabytes in memory" : "megabytes of the map's file"
-  shown = what eq "memory" ? there("deep map") : there("baked map")
-  plot for [m in shown] file(m) using 1:((what eq "memory" ? $4 : $5) > 0 ? (what eq "memory" ? $4 : $5) / 1e6 : NaN) with linespoints lw 2 pt 7 ps 0.6 lc rgb colour(m) title (m eq "map" ? "PCF" : "deep")
+  shown = what eq "memory" ? there("deep accuracy map") : there("baked map")
+  plot for [m in shown] file(m) using 1:((what eq "memory" ? $4 : $5) > 0 ? (what eq "memory" ? $4 : $5) / 1e6 : NaN) with linespoints lw 2 pt 7 ps 0.6 lc rgb colour(m) title (m eq "map" ? "PCF" : m eq "accuracy" ? "deep, accuracy" : "deep")
 }
 if (what eq "lv7" || what eq "lv7error") {
   scene = "lv7"

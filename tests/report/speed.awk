@@ -5,14 +5,15 @@ function setting(name,  w, s) {
   s = w[1] == 1 ? "1 ray" : w[1] * w[1] " rays"
   s = s " an image pixel"
   if (w[2] > 0) s = s ", MS " w[2]
-  if (w[3] != "") s = s ", " w[3] "&#178; map pixels, " w[4] " samples"
+  if (part(name, 3) == "accuracy") s = s ", accuracy " w[3]
+  else if (w[3] != "") s = s ", " w[3] "&#178; map pixels, " w[4] " samples"
   if (w[5] != "") s = s ", region " w[5] " image pixels wide"
   return s
 }
 END {
   print "<table><thead>" cells("method|setting|RMSE|max|total s|shadows s|user + system s|of none|map MB|file MB|runs", "th") "</thead><tbody>"
-  split("none raytraced deep baked map", methods, " ")
-  for (m = 1; m <= 5; m++)
+  split("none raytraced deep accuracy baked map", methods, " ")
+  for (m = 1; m <= 6; m++)
     for (i = 1; i <= count; i++) {
       n = names[i]
       if (index(n, "speed/" scene "/" methods[m] "/") != 1) continue
