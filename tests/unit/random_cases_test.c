@@ -265,7 +265,8 @@ typedef struct {
   int exact;
 } random_tile_maker;
 
-static dsm_result make_random(tile_maker *base, const tile_key *key, const tile **out, tile_tally *tally) {
+static dsm_result make_random(tile_maker *base, const tile_key *key, const wanted_pixels *wanted, const tile **out, tile_tally *tally) {
+  (void)wanted;
   random_tile_maker *m = (random_tile_maker *)(void *)base;
   if (key->level || key->x || key->y) abort();
   tally->pixels = TILE_PIXELS;

@@ -130,7 +130,7 @@ static void bad_values_are_refused(void **state) {
   refused(WORD_LOAD_FILE, "", 0, 0, 0, "load_file", "name of a file");
   refused(WORD_LOAD_FILE, "map.exr", 1, 0, 0, "load_file", "name of a file");
   refused(WORD_CACHE, NULL, 1, 0, 0, "0", "above 0");
-  refused(WORD_COUNT, NULL, 1, 1, 0, "10", "parameter");
+  refused(WORD_COUNT, NULL, 1, 1, 0, "11", "parameter");
 }
 
 static void sentence_fits_or_is_left_out(void **state) {
