@@ -29,14 +29,13 @@ static place_list places_on_face(const face *f, const tile_key *key, const wante
 /* The variance of one ray's transmittance, from a pixel and its neighbours in the tile: few rays alone may all agree by chance. */
 static double ray_variance(const baked_pixel pixels[TILE_PIXELS], const uint32_t rays[TILE_PIXELS], uint32_t place)
 {
-  uint32_t x = place % TILE_SIDE, y = place / TILE_SIDE;
+  tile_patch patch = tile_around(place);
   double sum = 0, count = 0;
-  for (uint32_t j = y > 0 ? y - 1 : 0; j <= y + 1 && j < TILE_SIDE; j++)
-    for (uint32_t i = x > 0 ? x - 1 : 0; i <= x + 1 && i < TILE_SIDE; i++) {
-      uint32_t p = j * TILE_SIDE + i;
-      sum += pixels[p].variance * rays[p];
-      count += rays[p] > 0;
-    }
+  for (uint32_t k = 0; k < patch.count; k++) {
+    uint32_t p = patch.place[k];
+    sum += pixels[p].variance * rays[p];
+    count += rays[p] > 0;
+  }
   return sum / count;
 }
 

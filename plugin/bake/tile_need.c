@@ -125,14 +125,13 @@ static void measure(const baked_pixel pixels[TILE_PIXELS], const layer *l, doubl
 /* The mean of a known pixel and its neighbours in the tile. */
 static double around(const baked_pixel pixels[TILE_PIXELS], const double values[TILE_PIXELS], uint32_t place)
 {
-  uint32_t x = place % TILE_SIDE, y = place / TILE_SIDE;
+  tile_patch patch = tile_around(place);
   double sum = 0, count = 0;
-  for (uint32_t j = y > 0 ? y - 1 : 0; j <= y + 1 && j < TILE_SIDE; j++)
-    for (uint32_t i = x > 0 ? x - 1 : 0; i <= x + 1 && i < TILE_SIDE; i++) {
-      int known = is_known(&pixels[j * TILE_SIDE + i]);
-      sum += known ? values[j * TILE_SIDE + i] : 0;
-      count += known;
-    }
+  for (uint32_t k = 0; k < patch.count; k++) {
+    int known = is_known(&pixels[patch.place[k]]);
+    sum += known ? values[patch.place[k]] : 0;
+    count += known;
+  }
   return sum / count;
 }
 
@@ -147,13 +146,12 @@ static int has_colour(const baked_pixel pixels[TILE_PIXELS])
 /* Whether a look-up next to the pixel can meet anything but full light or none. */
 static int is_in_question(const layer *l, uint32_t place, double aim)
 {
-  uint32_t x = place % TILE_SIDE, y = place / TILE_SIDE;
+  tile_patch patch = tile_around(place);
   double low = 1, high = 0;
-  for (uint32_t j = y > 0 ? y - 1 : 0; j <= y + 1 && j < TILE_SIDE; j++)
-    for (uint32_t i = x > 0 ? x - 1 : 0; i <= x + 1 && i < TILE_SIDE; i++) {
-      low = fmin(low, l->low[j * TILE_SIDE + i]);
-      high = fmax(high, l->high[j * TILE_SIDE + i]);
-    }
+  for (uint32_t k = 0; k < patch.count; k++) {
+    low = fmin(low, l->low[patch.place[k]]);
+    high = fmax(high, l->high[patch.place[k]]);
+  }
   return high > aim * aim && low < 1 - aim * aim;
 }
 

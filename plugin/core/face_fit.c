@@ -31,9 +31,9 @@ static uint32_t margin_pixels(double filter_width)
   return (uint32_t)ceil(0.5 * filter_width + 0.5);
 }
 
-/* Beyond the edge of a single face all is lit, but beyond that of a cube's face lies the next one. What a wide look-up
- * reads there has to be in the face's own margin. */
-static uint32_t cube_margin(const dsm_settings *settings)
+/* Beyond the edge of a single face all is lit, but beyond that of a cube's face lies the next one; and the coarse pixels with which
+ * a map with `accuracy` begins reach out of any face. What look-ups read there has to be in the face's own margin. */
+static uint32_t wide_margin(const dsm_settings *settings)
 {
   uint32_t blur = blur_level(settings), first = first_level(settings);
   double reach = footprint_reach(blur > first ? blur : first, 0);
@@ -283,7 +283,7 @@ static void fit_light(wish *w, const dsm_settings *settings, projection *out)
   }
   else
     out->axes = frame_along(ahead);
-  w->margin = cube_margin(settings);
+  w->margin = wide_margin(settings);
   fit_cube(w, out, half);
 }
 
@@ -296,6 +296,6 @@ void face_fit(const dsm_light *light, const dsm_settings *settings, projection *
   if (light->caster_count == 0)
     return;
   wish w = {light, settings->bounded ? &settings->bounds : NULL, settings->resolution,
-            settings->accuracy > 0 ? cube_margin(settings) : margin_pixels(settings->filter_width)};
+            settings->accuracy > 0 ? wide_margin(settings) : margin_pixels(settings->filter_width)};
   fit_light(&w, settings, out);
 }

@@ -24,6 +24,19 @@
 #define TILE_SIDE 16
 #define TILE_PIXELS (TILE_SIDE * TILE_SIDE)
 
+/* The places of a pixel and of its up to eight neighbours in the tile, row by row. */
+typedef struct { uint32_t place[9], count; } tile_patch;
+
+static inline tile_patch tile_around(uint32_t place)
+{
+  uint32_t x = place % TILE_SIDE, y = place / TILE_SIDE;
+  tile_patch p = {.count = 0};
+  for (uint32_t j = y > 0 ? y - 1 : 0; j <= y + 1 && j < TILE_SIDE; j++)
+    for (uint32_t i = x > 0 ? x - 1 : 0; i <= x + 1 && i < TILE_SIDE; i++)
+      p.place[p.count++] = j * TILE_SIDE + i;
+  return p;
+}
+
 /* Names a tile. Level 0 is the finest. */
 typedef struct {
   uint32_t face, level;

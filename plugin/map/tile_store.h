@@ -10,7 +10,8 @@
  *
  * Readers hold a ready tile without a lock. Claims are kept in a short list under a mutex; a thread that needs a
  * claimed tile sleeps at most 20 ms at a time and asks its host in between whether to give up. Who has claimed a tile may
- * claim finer ones to make it of, never coarser ones: so no two threads wait for each other.
+ * claim others to make it of, nearer to the level that is baked without any (the finest; with `accuracy`, the map's first level):
+ * an average claims finer ones, and what refines the first level coarser ones. So no two threads wait for each other.
  */
 #ifndef DSM_MAP_TILE_STORE_H
 #define DSM_MAP_TILE_STORE_H
