@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include "average_direct.h"
 #include "core/average.h"
 #include "noise_direct.h"
 #include "random.h"
