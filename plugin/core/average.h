@@ -34,7 +34,4 @@ dsm_result average_sweep(const average_input *in, average_scratch *scratch, vert
 dsm_result average_and_noise(const average_input *in, average_scratch *scratch, noise_profile *profile, vertices *out);
 void average_free(average_scratch *scratch);
 
-/* The same by the direct O(n^2) sum, for tests. */
-dsm_result average_direct(const average_input *in, vertices *out);
-
 #endif

@@ -124,22 +124,13 @@ static void add_perspective(outline *sum, const double origin[3], const frame *a
   if (is_clearly_missed(origin, axes, w, box))
     return;
   point3 corner[8];
-  int inside = 1, behind = 1;
-  int missed[4] = {1, 1, 1, 1};   /* all corners beyond one side of the pyramid */
+  int inside = 1;
   for (int k = 0; k < 8; k++) {
     corner[k] = to_frame(origin, axes, box, k);
     const double *p = corner[k].c;
-    int out[4] = {p[0] < w->u0 * p[2], p[0] > w->u1 * p[2], p[1] < w->v0 * p[2], p[1] > w->v1 * p[2]};
-    for (int i = 0; i < 4; i++) {
-      missed[i] &= out[i];
-      inside &= !out[i];
-    }
-    inside &= p[2] > 0;
-    behind &= p[2] < 0;
+    int within_u = p[0] >= w->u0 * p[2] && p[0] <= w->u1 * p[2], within_v = p[1] >= w->v0 * p[2] && p[1] <= w->v1 * p[2];
+    inside &= within_u && within_v && p[2] > 0;
   }
-  if (behind || missed[0] || missed[1] || missed[2] || missed[3])
-    return;
-
   double nearest = 0, farthest = 0;
   for (int i = 0; i < 3; i++) {
     double low = box->low[i] - origin[i], high = box->high[i] - origin[i];

@@ -86,8 +86,8 @@ static int extend(wedge *w, const spot *p) {
   range target = window(w, p), slopes = w->slopes;
   for (int c = 0; c < w->channels; ++c) {
     double y = w->y.c[c], run = p->z - w->z;
-    if (w->level) {
-      if (!(target.low[c] <= y && y <= target.high[c])) return 0;
+    if (w->level) {   /* at 1, which no window lies above */
+      if (target.high[c] < y) return 0;
       continue;
     }
     /* Depths can be so close that a slope overflows. Then the segment reaches that one window and no other. */

@@ -2,6 +2,7 @@
 #include "core/compress_bundle.h"
 #include "core/extremes.h"
 
+#include <assert.h>
 #include <math.h>
 
 void bundle_begin(bundle *b, int level) {
@@ -65,15 +66,13 @@ void bundle_heights(const bundle *b, double slope, double z, double *low, double
 }
 
 line bundle_middle(const bundle *b, double steepest) {
+  assert(b->floor.first < b->floor.end && b->roof.first < b->roof.end);
   double low = b->fall.line.slope, high = lesser(b->rise.line.slope, steepest);
   /* Where nothing holds one side, a turn by the whole range of values is far enough. */
   double far = b->end > b->start ? 1 / (b->end - b->start) : 1;
   if (low == -HUGE_VAL) low = (high == HUGE_VAL ? 0 : high) - far;
   if (high == HUGE_VAL) high = low + far;
-  double slope = lesser(low + (high - low) / 2, high), bottom, top;
-  double z = b->floor.first < b->floor.end ? b->floor.points[b->floor.first].z : b->start;
+  double slope = lesser(low + (high - low) / 2, high), z = b->floor.points[b->floor.first].z, bottom, top;
   bundle_heights(b, slope, z, &bottom, &top);
-  if (bottom == -HUGE_VAL) bottom = top;
-  if (top == HUGE_VAL) top = bottom;
   return (line){{z, bottom + (top - bottom) / 2}, slope};
 }

@@ -57,7 +57,7 @@ static inline int bundle_pass(bundle *b, double z, double low, double high) {
 /* How high the lines of one slope are at depth z. */
 void bundle_heights(const bundle *b, double slope, double z, double *low, double *high);
 
-/* A line in the middle, no steeper upwards than `steepest`. */
+/* A line in the middle, no steeper upwards than `steepest`, of a bundle that gates bound from below and from above. */
 line bundle_middle(const bundle *b, double steepest);
 
 #endif

@@ -24,7 +24,7 @@ static inline double noise_ceiling(double rays) { return 0.25 / sqrt(rays); }
  * the sum of the squared differences of neighbours, `pairs` how many neighbours differ. */
 static inline double noise_allowed(double squares, double pairs, double rays)
 {
-  if (!(squares > 0 && pairs > 0))
+  if (!(squares > 0))
     return 0;
   /* Every disagreeing ray has two neighbours. From four such rays on, half the error is more than one ray's
    * step; the hundredth lets that step itself pass. */

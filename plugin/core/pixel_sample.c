@@ -71,14 +71,10 @@ static double normal_inverse(double p)
 double pixel_filter_inverse(filter_kind kind, double u)
 {
   static const double cut = 0.022750131948179195;   /* of the normal distribution, below -2 */
-  switch (kind) {
-    case FILTER_TRIANGLE:
-      return u < 0.5 ? sqrt(2 * u) - 1 : 1 - sqrt(2 - 2 * u);
-    case FILTER_GAUSSIAN:
-      return fmax(-1, fmin(1, 0.5 * normal_inverse(cut + u * (1 - 2 * cut))));
-    case FILTER_BOX:
-      break;
-  }
+  if (kind == FILTER_TRIANGLE)
+    return u < 0.5 ? sqrt(2 * u) - 1 : 1 - sqrt(2 - 2 * u);
+  if (kind == FILTER_GAUSSIAN)
+    return fmax(-1, fmin(1, 0.5 * normal_inverse(cut + u * (1 - 2 * cut))));
   return 2 * u - 1;
 }
 

@@ -86,8 +86,7 @@ static void say(sentence *s, const char *format, ...)
   va_start(arguments, format);
   int n = vsnprintf(s->text + s->used, s->size - s->used, format, arguments);
   va_end(arguments);
-  if (n > 0)
-    s->used += (uint64_t)n;
+  s->used += (uint64_t)n;   /* also of what did not fit; nothing is said after that */
 }
 
 /* "1 or 2 whole numbers from 1 to 16384" */
@@ -132,7 +131,7 @@ static int choice_index(const char *choices, const char *word)
   for (int i = 0; ; i++) {
     const char *end = strchr(choices, ' ');
     size_t n = end ? (size_t)(end - choices) : strlen(choices);
-    if (n == length && n > 0 && memcmp(choices, word, n) == 0)
+    if (n == length && memcmp(choices, word, n) == 0)
       return i;
     if (!end)
       return -1;

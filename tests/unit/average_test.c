@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include "average_direct.h"
 #include "core/average.h"
 #include "noise_direct.h"
 #include "random.h"
@@ -359,23 +360,25 @@ static void what_is_dark_is_exactly_zero(void **state) {
 /* A rate of change that no double holds is a step. */
 static void steepest_ramps_stay_finite(void **state) {
   (void)state;
-  set s;
-  set_begin(&s, 2);
-  set_push(&s, 0, rgb_grey(1));
-  set_push(&s, 5e-324, rgb_grey(0.5));
-  set_push(&s, 1, rgb_grey(0));
-  set_next(&s);
-  set_push(&s, 0, rgb_grey(1));
-  set_push(&s, 2, rgb_grey(0));
-  set_next(&s);
-  average_scratch scratch = {0};
-  vertices out = {0};
-  sweep(&s, &scratch, &out);
-  assert_true(is_tidy(&out, 1));
-  for (double z = 0.25; z < 3; z += 0.25) assert_true(error_at(&s.in, &out, z) < 1e-15);
-  vertices_free(&out);
-  average_free(&scratch);
-  set_free(&s);
+  for (int coloured = 0; coloured < 2; ++coloured) {
+    set s;
+    set_begin(&s, 2);
+    set_push(&s, 0, rgb_grey(1));
+    set_push(&s, 5e-324, coloured ? (rgb){{0.5, 0.25, 1}} : rgb_grey(0.5));
+    set_push(&s, 1, rgb_grey(0));
+    set_next(&s);
+    set_push(&s, 0, rgb_grey(1));
+    set_push(&s, 2, rgb_grey(0));
+    set_next(&s);
+    average_scratch scratch = {0};
+    vertices out = {0};
+    sweep(&s, &scratch, &out);
+    assert_true(is_tidy(&out, 1));
+    for (double z = 0.25; z < 3; z += 0.25) assert_true(error_at(&s.in, &out, z) < 1e-15);
+    vertices_free(&out);
+    average_free(&scratch);
+    set_free(&s);
+  }
 }
 
 static void appends_and_undoes(void **state) {

@@ -119,6 +119,30 @@ static void perspective_is_exact(void **state) {
   }
 }
 
+/* A light that a box nearly touches sees it in all directions on that side, up to a right angle. */
+static void a_box_that_nearly_touches(void **state) {
+  (void)state;
+  const double origin[3] = {0, 0, 0};
+  const rectangle window = {-3, -2, 4, 5};
+  for (int axis = 0; axis < 3; ++axis) {
+    double forward[3] = {0, 0, 0};
+    forward[(axis + 1) % 3] = 1;
+    frame axes = frame_along(forward);
+    for (double gap = 1e-17; gap < 1e-9; gap *= 10) {
+      dsm_box box = {{-1, -1, -1}, {1, 1, 1}};
+      box.low[axis] = gap;
+      outline sum = OUTLINE_EMPTY;
+      outline_add(&sum, origin, &axes, 1, &window, &box);
+      assert_true(fabs(sum.near_depth - gap) < 1e-15 * gap && fabs(sum.far_depth - sqrt(3)) < 1e-15);
+      /* the box lies where right * u + up * v points to its side */
+      for (double u = -2.9; u < 4; u += 0.1)
+        for (double v = -1.9; v < 5; v += 0.1)
+          if (u * axes.right[axis] + v * axes.up[axis] > 1e-6)
+            assert_true(sum.area.u0 <= u && u <= sum.area.u1 && sum.area.v0 <= v && v <= sum.area.v1);
+    }
+  }
+}
+
 /* Whatever point of any of some boxes the light and the window see, the sum of them holds. */
 static void random_points_are_inside(void **state) {
   (void)state;
@@ -214,6 +238,7 @@ static void many_are_the_sum_of_each(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(perspective_is_exact),
+    cmocka_unit_test(a_box_that_nearly_touches),
     cmocka_unit_test(random_points_are_inside),
     cmocka_unit_test(orthographic_spans_the_corners),
     cmocka_unit_test(many_are_the_sum_of_each),

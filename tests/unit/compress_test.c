@@ -341,6 +341,49 @@ static void closest_depths_stay_finite(void **state) {
   vertices_free(&out);
 }
 
+/* A steep rise overflows as well as a steep fall. */
+static void closest_depths_may_rise(void **state) {
+  (void)state;
+  vertex e[] = {grey(0, 1), grey(0, 0.1), grey(5e-324, 0.9), grey(1e-323, 0.2), grey(1.5e-323, 0.8), grey(1, 0.7)};
+  vertices out = {0};
+  for (double t = 0; t < 0.4; t += 0.03) {
+    compress(e, 6, 1, t, &out);
+    assert_true(is_tidy(e, 6, &out, 0));
+    for (int i = 1; i < 6; ++i)
+      assert_true(fabs(vertices_at(out.data, out.count, nextafter(e[i].z, 2)).c[0] - vertices_at(e, 6, nextafter(e[i].z, 2)).c[0]) <= t + 1e-15);
+  }
+  vertices_free(&out);
+}
+
+/* Values that rounding has led out of [0,1], or worse, are taken for 0 and 1; depths may be relative to anything. */
+static void odd_inputs(void **state) {
+  (void)state;
+  vertices out = {0};
+  for (uint64_t seed = 0; seed < 2000; ++seed) {
+    rng r = rng_seeded(seed);
+    vertex in[MOST], cut[MOST];
+    size_t n = 1 + rng_below(&r, MOST - 1);
+    int channels = rng_below(&r, 2) ? 3 : 1;
+    double z = -20, tolerance = rng_between(&r, 0.001, 0.3), most = rng_below(&r, 2) ? 1e-15 : 0.4;
+    for (size_t i = 0; i < n; ++i) {
+      for (int c = 0; c < 3; ++c) in[i].v.c[c] = rng_below(&r, 3) ? rng_between(&r, -most, 1 + most) : rng_below(&r, 2) ? -most : 1 + most;
+      in[i].z = cut[i].z = z;
+      for (int c = 0; c < 3; ++c) cut[i].v.c[c] = fmin(1, fmax(0, in[i].v.c[c]));
+      z += rng_below(&r, 3) ? 2 * rng_unit(&r) : 0;
+    }
+    compress(in, n, channels, tolerance, &out);
+    assert_seeded(&r, is_tidy(in, n, &out, 0));
+    assert_seeded(&r, largest_error(cut, n, &out, channels) <= tolerance + 2e-15);
+    size_t greedy = out.count;
+    out.count = 0;
+    assert_int_equal(compress_minimal(in, n, channels, tolerance, &out), DSM_OK);
+    for (size_t i = 0; i < out.count; ++i)
+      for (int c = 0; c < 3; ++c) assert_seeded(&r, out.data[i].v.c[c] >= 0 && out.data[i].v.c[c] <= 1);
+    assert_seeded(&r, out.count <= greedy && largest_error(cut, n, &out, channels) <= tolerance + 2e-15);
+  }
+  vertices_free(&out);
+}
+
 static void appends_and_undoes(void **state) {
   (void)state;
   vertex e[] = {grey(3, 1), grey(3, 0)};
@@ -371,6 +414,8 @@ int main(void) {
     cmocka_unit_test(a_plateau_of_a_million_vertices),
     cmocka_unit_test(a_goal_of_no_length),
     cmocka_unit_test(closest_depths_stay_finite),
+    cmocka_unit_test(closest_depths_may_rise),
+    cmocka_unit_test(odd_inputs),
     cmocka_unit_test(appends_and_undoes),
   };
   return cmocka_run_group_tests_name("compress", tests, NULL, NULL);

@@ -17,24 +17,32 @@ static inline long double line_between(long double a, long double b, long double
 }
 
 static inline long double true_value(const vertex *f, size_t count, double z, int side, int c) {
-  size_t i = 0;
-  while (i < count && (side == BEHIND ? f[i].z <= z : f[i].z < z)) ++i;
+  size_t i = 0, end = count;   /* the first vertex behind; in front of a step, the first that is not in front of it */
+  while (i < end) {
+    size_t middle = i + (end - i) / 2;
+    if (side == BEHIND ? f[middle].z <= z : f[middle].z < z) i = middle + 1;
+    else end = middle;
+  }
   if (i == 0) return 1;
   if (i == count) return f[count - 1].v.c[c];
   return line_between(f[i - 1].v.c[c], f[i].v.c[c], (long double)z - f[i - 1].z, (long double)f[i].z - f[i - 1].z);
 }
 
-/* The product of what all events take, each by itself. */
-static inline long double true_transmittance(const event *e, size_t count, double z, int side, int c) {
-  long double v = 1;
-  for (size_t i = 0; i < count; ++i) {
-    long double t = e[i].transmittance.c[c], depth = t > 0 ? -logl(t) : 745;
-    int passed = side == BEHIND ? e[i].back <= z : e[i].back < z;
-    if (e[i].front == e[i].back) v *= passed ? t : 1;
-    else if (e[i].back <= z) v *= expl(-depth);
-    else if (e[i].front < z) v *= expl(-depth * ((long double)z - e[i].front) / ((long double)e[i].back - e[i].front));
+/* The optical depth of an event; where nothing passes it, infinite for a surface, and for a span what the library says. */
+static inline long double true_depth(const event *e, int c) {
+  if (e->transmittance.c[c] > 0) return -logl(e->transmittance.c[c]);
+  return e->front == e->back ? HUGE_VALL : 745;
+}
+
+/* The product of what all events take, each by itself: their optical depths are depths[i][c]. In order of their fronts. */
+static inline long double true_transmittance(const event *e, long double (*depths)[3], size_t count, double z, int side, int c) {
+  long double sum = 0;
+  for (size_t i = 0; i < count && e[i].front <= z; ++i) {
+    if (e[i].front == e[i].back) sum += side == BEHIND || e[i].back < z ? depths[i][c] : 0;
+    else if (e[i].back <= z) sum += depths[i][c];
+    else sum += depths[i][c] * (((long double)z - e[i].front) / ((long double)e[i].back - e[i].front));
   }
-  return v;
+  return expl(-sum);
 }
 
 static inline long double true_average(const average_input *in, double z, int side, int c) {
@@ -45,6 +53,5 @@ static inline long double true_average(const average_input *in, double z, int si
   }
   return sum / weights;
 }
-
 
 #endif

@@ -52,6 +52,70 @@ static void bad_lights_are_refused_with_a_sentence(void **state) {
   assert_int_equal(dsm_api.map_create(&host, &lights[0], NULL, &map), DSM_INVALID);
 }
 
+static void every_bound_of_a_box_is_looked_at(void **state) {
+  (void)state;
+  static const double wrong[] = {NAN, INFINITY, -INFINITY, 1e151};
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k) {
+      dsm_box boxes[2] = {{{0, 0, 1}, {1, 1, 2}}, {{0, 0, 1}, {1, 1, 2}}};
+      if (k < 4) boxes[1].low[i] = wrong[k];
+      else if (k < 8) boxes[1].high[i] = wrong[k - 4];
+      else boxes[1].low[i] = 2.5;
+      dsm_light light = spot_at(0, 0, 0, 0, 0, 1, 20);
+      light.casters = boxes;
+      light.caster_count = 2;
+      world w = {0};
+      dsm_map *map;
+      assert_int_equal(create(&w, light, &map), DSM_INVALID);
+      assert_non_null(strstr(w.last, "without a finite, ordered box."));
+      light.caster_count = 1;
+      assert_int_equal(create(&w, light, &map), DSM_OK);
+      dsm_api.map_destroy(map);
+    }
+  dsm_light light = spot_at(0, 0, 0, 0, 0, 1, 20);
+  light.cos_angle = -1.5;
+  world w = {0};
+  dsm_map *map;
+  assert_int_equal(create(&w, light, &map), DSM_INVALID);
+  light = parallel_at(0, 0, 0, 0, 0, 1);
+  light.direction[1] = NAN;
+  assert_int_equal(create(&w, light, &map), DSM_INVALID);
+  assert_string_equal(w.last, "The deep shadow map's light has no direction.");
+}
+
+/* What is wrong is refused all the same by a host without ears, and by one without hands. */
+static void hosts_without_report_or_room(void **state) {
+  (void)state;
+  shape ball = sphere_at(0, 0, 5, 1, 0);
+  world w = {.shapes = &ball, .count = 1};
+  dsm_host host = host_of(&w);
+  dsm_light light = spot_at(0, 0, 0, 0, 0, 1, 20);
+  dsm_map *map = (dsm_map *)1;
+  light.casters = &ball.box;
+  light.caster_count = 1;
+  assert_int_equal(dsm_api.map_create(&host, &light, NULL, NULL), DSM_INVALID);
+  assert_int_equal(dsm_api.map_create(NULL, &light, NULL, &map), DSM_INVALID);
+  assert_null(map);
+  assert_int_equal(dsm_api.map_create(&host, NULL, NULL, &map), DSM_INVALID);
+  assert_int_equal(w.sentences, 1);
+  host.report = NULL;
+  assert_int_equal(dsm_api.map_create(&host, NULL, NULL, &map), DSM_INVALID);
+  assert_int_equal(dsm_api.map_create(&host, &light, NULL, &map), DSM_OK);
+  /* and a tile that fails is told to nobody */
+  dsm_worker *worker;
+  double rgb[3];
+  dsm_receiver at = in_air(0, 0, 9);
+  w.fail_with = DSM_NO_MEMORY;
+  assert_int_equal(dsm_api.worker_create(map, &w, &worker), DSM_OK);
+  assert_int_equal(dsm_api.lookup(worker, &at, rgb), DSM_TRACE);
+  dsm_statistics got = {.size = 0, .tiles = 77};
+  dsm_api.statistics(map, &got);
+  assert_true(got.size == 0 && got.tiles == 77);
+  dsm_api.worker_destroy(worker);
+  dsm_api.map_destroy(map);
+  assert_int_equal(w.sentences, 1);
+}
+
 static void nothing_to_destroy(void **state) {
   (void)state;
   dsm_api.map_destroy(NULL);
@@ -181,6 +245,8 @@ static void settings_and_light_are_copied(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(bad_lights_are_refused_with_a_sentence),
+    cmocka_unit_test(every_bound_of_a_box_is_looked_at),
+    cmocka_unit_test(hosts_without_report_or_room),
     cmocka_unit_test(nothing_to_destroy),
     cmocka_unit_test(no_casters_all_lit),
     cmocka_unit_test(odd_cones),

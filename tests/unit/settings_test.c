@@ -60,6 +60,8 @@ static void good_values_are_taken(void **state) {
   assert_true(set.bias == 1e6);
   assert_int_equal(give(WORD_BLUR, NULL, 1, 1, 0), DSM_OK);
   assert_true(set.blur == 1);
+  assert_int_equal(give(WORD_ACCURACY, NULL, 1, 0.01, 0), DSM_OK);
+  assert_true(set.accuracy == 0.01);
   assert_int_equal(give(WORD_CACHE, NULL, 1, 0.5, 0), DSM_OK);
   assert_true(set.cache == 0.5);
   /* two corners in any order */
@@ -104,6 +106,8 @@ static void refused(uint32_t word, const char *choice, uint32_t count, double a,
 static void bad_values_are_refused(void **state) {
   (void)state;
   settings_defaults(&set);
+  refused(WORD_ACCURACY, NULL, 1, 0, 0, "0", "above 0 and below 0.5");
+  refused(WORD_ACCURACY, NULL, 1, 0.5, 0, "0.5", "1 number");
   refused(WORD_RESOLUTION, NULL, 1, 0, 0, "0", "1 to 2 whole numbers from 1 to 16384");
   refused(WORD_RESOLUTION, NULL, 2, 5, 16385, "16385", "16384");
   refused(WORD_RESOLUTION, NULL, 1, 1.5, 0, "1.5", "whole");
@@ -141,6 +145,33 @@ static void sentence_fits_or_is_left_out(void **state) {
   assert_true(strlen(small) == 3 && small[4] == '5');
   assert_int_equal(settings_set(&set, WORD_SAMPLES, NULL, &bad, 1, NULL, 0), DSM_INVALID);
   assert_int_equal(settings_set(&set, WORD_SAMPLES, NULL, NULL, 1, NULL, 0), DSM_INVALID);
+}
+
+static void without_settings(void **state) {
+  (void)state;
+  double one = 1;
+  char sentence[60] = "as it was";
+  assert_int_equal(settings_set(NULL, WORD_SAMPLES, NULL, &one, 1, sentence, 0), DSM_INVALID);
+  assert_string_equal(sentence, "as it was");
+  assert_int_equal(settings_set(NULL, WORD_SAMPLES, NULL, &one, 1, sentence, sizeof sentence), DSM_INVALID);
+  assert_string_equal(sentence, "There is no parameter number 2.");
+  assert_null(settings_text(NULL, WORD_SAVE_FILE));
+  assert_null(settings_text(&set, WORD_SAMPLES));
+  settings_destroy(NULL);
+}
+
+/* With `accuracy`, numbers that the scene gives are bounds; those that it leaves open are wide ones. */
+static void accuracy_opens_what_the_scene_leaves_open(void **state) {
+  (void)state;
+  for (int given = 0; given < 8; ++given) {
+    settings_defaults(&set);
+    if (given & 1) assert_int_equal(give(WORD_ACCURACY, NULL, 1, 0.02, 0), DSM_OK);
+    if (given & 2) assert_int_equal(give(WORD_RESOLUTION, NULL, 1, 300, 0), DSM_OK);
+    if (given & 4) assert_int_equal(give(WORD_SAMPLES, NULL, 1, 5, 0), DSM_OK);
+    settings_complete(&set);
+    assert_int_equal(set.resolution[0], given & 2 ? 300 : given & 1 ? 8192 : 512);
+    assert_int_equal(set.samples, given & 4 ? 5 : given & 1 ? 1024 : 16);
+  }
 }
 
 /* The row of a word of shadow_map. */
@@ -210,6 +241,8 @@ int main(void) {
     cmocka_unit_test(texts),
     cmocka_unit_test(bad_values_are_refused),
     cmocka_unit_test(sentence_fits_or_is_left_out),
+    cmocka_unit_test(without_settings),
+    cmocka_unit_test(accuracy_opens_what_the_scene_leaves_open),
     cmocka_unit_test(words_of_shadow_map),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,11 +6,13 @@
 #include <cmocka.h>
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "map/spool.h"
@@ -137,12 +139,49 @@ static void a_full_disk(void **state) {
   spool_destroy(s);
 }
 
+/* The descriptor of the one open file that has no name, which is the spool's. */
+static int descriptor(void) {
+  struct stat about;
+  int file = 3;
+  while (file < 100 && !(fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_nlink == 0)) ++file;
+  assert_true(file < 100);
+  return file;
+}
+
+/* What cannot be read whole is not read at all: a file that somebody has cut, and one that cannot be read. */
+static void a_file_that_cannot_be_read(void **state) {
+  (void)state;
+  rng r = rng_seeded(4);
+  spool *s;
+  assert_int_equal(spool_create(path, COUNT, &s), DSM_OK);
+  tile *tiles[2] = {any_tile(&r), any_tile(&r)};
+  for (uint64_t i = 0; i < 2; ++i) assert_int_equal(spool_write(s, i, tiles[i]), DSM_OK);
+  int file = descriptor();
+  assert_int_equal(ftruncate(file, (off_t)tiles[0]->size + 10), 0);
+  const tile *got = NULL;
+  assert_int_equal(spool_read(s, 0, &got), DSM_OK);
+  assert_true(got && same_bytes(got, tiles[0]));
+  tile_destroy(got);
+  got = &tile_lit;
+  assert_int_equal(spool_read(s, 1, &got), DSM_REFUSED);
+  assert_null(got);
+  int other = open("/dev/null", O_WRONLY);
+  assert_true(other >= 0 && dup2(other, file) == file);
+  close(other);
+  got = &tile_lit;
+  assert_int_equal(spool_read(s, 0, &got), DSM_REFUSED);
+  assert_null(got);
+  for (int i = 0; i < 2; ++i) tile_destroy(tiles[i]);
+  spool_destroy(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(tiles_come_back),
     cmocka_unit_test(the_file_has_no_name),
     cmocka_unit_test(no_such_directory),
     cmocka_unit_test(a_full_disk),
+    cmocka_unit_test(a_file_that_cannot_be_read),
   };
   return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }

@@ -8,6 +8,7 @@
 
 #include "bake/step_sweep.h"
 #include "core/transmittance.h"
+#include "average_direct.h"
 #include "noise_direct.h"
 #include "random.h"
 

@@ -294,6 +294,18 @@ static void span_too_short_for_a_rate_is_a_step(void **state) {
   vertices_free(&f);
 }
 
+/* Overlapping spans of which each is a step by itself. */
+static void spans_too_short_that_overlap(void **state) {
+  (void)state;
+  event e[] = {span(0, 3e-300, 0.1), span(1e-300, 4e-300, 0.2), span(2e-300, 2.5e-300, 0.4), span(1, 2, 0.5)};
+  vertices f = {0};
+  assert_int_equal(transmittance_build(e, 4, 0.01, &f), DSM_OK);
+  assert_true(fabs(vertices_at(f.data, f.count, 0.5).c[0] - exp(-0.7)) < 1e-15);
+  assert_true(fabs(vertices_at(f.data, f.count, 3).c[0] - exp(-1.2)) < 1e-15);
+  assert_true(f.data[0].v.c[0] == 1);
+  vertices_free(&f);
+}
+
 static void nested_thousands(void **state) {
   (void)state;
   enum { n = 20000 };
@@ -379,6 +391,7 @@ int main(void) {
     cmocka_unit_test(dense_sheet_leaves_no_trace),
     cmocka_unit_test(span_of_transmittance_zero_ends_dark),
     cmocka_unit_test(span_too_short_for_a_rate_is_a_step),
+    cmocka_unit_test(spans_too_short_that_overlap),
     cmocka_unit_test(nested_thousands),
     cmocka_unit_test(random_events_match_the_product),
     cmocka_unit_test(appends_and_undoes),

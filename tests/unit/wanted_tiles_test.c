@@ -88,10 +88,40 @@ static void tiles_outside_are_refused(void **state) {
   stage_close(&s);
 }
 
+typedef struct {
+  dsm_worker *worker;
+  const dsm_receiver *at;
+  int told;
+} asking;
+
+static void ask_again(void *data, const dsm_tiles *tiles) {
+  asking *a = data;
+  (void)tiles;
+  ++a->told;
+  assert_int_equal(dsm_api.tiles_wanted(a->worker, a->at, ask_again, a), DSM_INVALID);
+}
+
+/* From within `wanted` nothing can be asked; and what no look-up takes, this does not. */
+static void what_cannot_be_asked(void **state) {
+  (void)state;
+  shape ball = sphere_at(0, 0, 5, 1, 0);
+  stage s;
+  stage_open(&s, &ball, 1, spot_at(0, 0, 0, 0, 0, 1, 30), WORDS("resolution 32"));
+  dsm_receiver at = in_air(0, 0, 9), nowhere = in_air(0, NAN, 9);
+  asking a = {s.worker, &at, 0};
+  assert_int_equal(dsm_api.tiles_wanted(s.worker, &at, ask_again, &a), DSM_OK);
+  assert_true(a.told > 0);
+  a.told = 0;
+  assert_int_equal(dsm_api.tiles_wanted(s.worker, &nowhere, ask_again, &a), DSM_INVALID);
+  assert_int_equal(a.told, 0);
+  stage_close(&s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(wanted_tiles_are_those_made),
     cmocka_unit_test(tiles_outside_are_refused),
+    cmocka_unit_test(what_cannot_be_asked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,22 +1,24 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* The average as its definition says it, depth by depth: what faster ways to it are held against. */
-#include "core/average.h"
+/* The average as its definition says it, depth by depth, in O(n^2): what faster ways to it are held against. */
+#ifndef TESTS_AVERAGE_DIRECT_H
+#define TESTS_AVERAGE_DIRECT_H
 
 #include <stdlib.h>
 
+#include "core/average.h"
 #include "core/compensated.h"
 
-static double total(const compensated *of) { return fmin(1, fmax(0, compensated_total(of))); }
+static inline double direct_total(const compensated *of) { return fmin(1, fmax(0, compensated_total(of))); }
 
-static int is_zero(rgb a) { return a.c[0] == 0 && a.c[1] == 0 && a.c[2] == 0; }
+static inline int is_zero(rgb a) { return a.c[0] == 0 && a.c[1] == 0 && a.c[2] == 0; }
 
-static int by_depth(const void *a, const void *b) {
+static inline int direct_by_depth(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
 
 /* The value behind depth z. */
-static rgb value_behind(const vertex *data, size_t count, double z) {
+static inline rgb value_behind(const vertex *data, size_t count, double z) {
   size_t low = 0, high = count;   /* the first vertex behind z */
   while (low < high) {
     size_t middle = low + (high - low) / 2;
@@ -30,7 +32,7 @@ static rgb value_behind(const vertex *data, size_t count, double z) {
 }
 
 /* The average in front of z, and behind it if some function steps there (else the two are the same). */
-static void sum_at(const average_input *in, double z, rgb *before, rgb *after) {
+static inline void sum_at(const average_input *in, double z, rgb *before, rgb *after) {
   compensated b[3] = {{0, 0}}, a[3] = {{0, 0}};
   int steps = 0;
   for (uint32_t i = 0; i < in->count; ++i) {
@@ -44,26 +46,26 @@ static void sum_at(const average_input *in, double z, rgb *before, rgb *after) {
     }
   }
   for (int c = 0; c < 3; ++c) {
-    before->c[c] = total(&b[c]);
-    after->c[c] = steps ? total(&a[c]) : before->c[c];
+    before->c[c] = direct_total(&b[c]);
+    after->c[c] = steps ? direct_total(&a[c]) : before->c[c];
   }
 }
 
-static int grows(const average_input *in) {
+static inline int grows(const average_input *in) {
   for (uint32_t i = 0; i < in->count; ++i)
     for (size_t k = in->first[i] + 1; k < in->first[i + 1]; ++k)
       if (rgb_max(rgb_sub(in->all[k].v, in->all[k - 1].v)) > 0) return 1;
   return 0;
 }
 
-dsm_result average_direct(const average_input *in, vertices *out) {
+static inline dsm_result average_direct(const average_input *in, vertices *out) {
   size_t begin = out->count, depths = 0, count = 0;
   if (in->count > 0) count = in->first[in->count] - in->first[0];
   if (count == 0) return DSM_OK;
   double *z = count <= SIZE_MAX / sizeof *z ? malloc(count * sizeof *z) : NULL;
   if (!z) return DSM_NO_MEMORY;
   for (size_t i = 0; i < count; ++i) z[i] = in->all[in->first[0] + i].z;
-  qsort(z, count, sizeof *z, by_depth);
+  qsort(z, count, sizeof *z, direct_by_depth);
   for (size_t i = 0; i < count; ++i)
     if (depths == 0 || z[i] != z[depths - 1]) z[depths++] = z[i];
 
@@ -86,3 +88,5 @@ dsm_result average_direct(const average_input *in, vertices *out) {
   free(z);
   return result;
 }
+
+#endif
