@@ -109,7 +109,7 @@ static void damaged_maps_are_refused_or_read(void **state) {
     long before = most_memory();
     size_t size;
     unsigned char *good = bytes_of(path, &size), *bad = malloc(size);
-    for (int run = 0; run < RUNS_A_MAP; ++run) {
+    for (int run = 0; run < (int)most_cases(RUNS_A_MAP); ++run) {
       size_t less = size;
       memcpy(bad, good, size);
       for (uint32_t n = 1 + rng_below(&r, MOST_DAMAGES); n > 0; --n) less = damage(&r, bad, less);
