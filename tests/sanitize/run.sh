@@ -65,7 +65,7 @@ judge() {
   shift 2
   case $what in *"$word"*) ;; *) return 0 ;; esac
   local try status
-  for try in 1 2 3 4 5; do
+  for try in {1..20}; do
     status=0
     timeout 1800 "${wrap[@]}" "$@" >"$log" 2>&1 </dev/null || status=$?
     # POV-Ray gives its own first thread three seconds to start, which are few where the machine is busy.
@@ -163,7 +163,7 @@ run_program() {
   render scenes/glass.pov "${little[@]}" Declare=Accuracy=0.05 Declare=Bound=512
   render scenes/glass.pov "${little[@]}" Declare=Pcf=1 Declare=Resolution=128 Declare=File=1
   render scenes/glass.pov "${size[@]}" Declare=Pcf=1 Declare=Resolution=128 Declare=File=2
-  render scenes/point_light.pov "${size[@]}"
+  render scenes/point_light.pov "${little[@]}"
   render scenes/point_light.pov "${little[@]}" $pcf
   render scenes/lamps.pov "${little[@]}" $pcf
   render scenes/cloud.pov "${little[@]}" Declare=MS=5
