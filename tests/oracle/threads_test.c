@@ -65,7 +65,10 @@ static void *look_everywhere(void *data) {
   return NULL;
 }
 
+/* A smaller map where fewer cases are asked for. */
 static dsm_map *bake_with(int threads, int stops_often, uint64_t seed) {
+  char resolution[32];
+  snprintf(resolution, sizeof resolution, "resolution %d", (int)most_cases(150));
   world w = {.shapes = scene, .count = SHAPES};
   dsm_box boxes[SHAPES];
   for (int i = 0; i < SHAPES; ++i) boxes[i] = scene[i].box;
@@ -74,7 +77,7 @@ static dsm_map *bake_with(int threads, int stops_often, uint64_t seed) {
   light.caster_count = SHAPES;
   dsm_host host = host_of(&w);
   host.pause = pause_sometimes;
-  dsm_settings *settings = settings_of(WORDS("resolution 150", "samples 9", "filter gaussian 2"));
+  dsm_settings *settings = settings_of(WORDS(resolution, "samples 9", "filter gaussian 2"));
   dsm_map *map = NULL;
   assert_int_equal(dsm_api.map_create(&host, &light, settings, &map), DSM_OK);
   dsm_api.settings_destroy(settings);

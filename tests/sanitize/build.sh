@@ -7,6 +7,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 tree=$top/build/$1
 flags=$2
 case $flags in   # libtool links C++ libraries without what the compiler would add by itself
+  *-fsanitize=address,undefined*) libs='-lasan -lubsan' ;;
   *-fsanitize=address*) libs=-lasan ;;
   *-fsanitize=undefined*) libs=-lubsan ;;
   *-fsanitize=thread*) libs=-ltsan ;;

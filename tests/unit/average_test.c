@@ -195,7 +195,7 @@ static void random_functions_match_the_direct_sum(void **state) {
   (void)state;
   average_scratch scratch = {0};
   vertices out = {0}, direct = {0};
-  for (uint64_t seed = 0; seed < 1500; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(1500); ++seed) {
     rng r = rng_seeded(seed);
     uint32_t count = 1 + rng_below(&r, 24);
     int may_grow = rng_below(&r, 3) == 0;
@@ -241,7 +241,7 @@ static void noise_is_that_of_the_pairs(void **state) {
   noise_profile profile = {0};
   vertices out = {0};
   size_t noisy = 0;
-  for (uint64_t seed = 0; seed < 1500; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(1500); ++seed) {
     rng r = rng_seeded(seed);
     uint32_t count = 1 + rng_below(&r, 24);
     int may_grow = rng_below(&r, 3) == 0, grey = rng_below(&r, 2) == 0;
@@ -262,7 +262,7 @@ static void noise_is_that_of_the_pairs(void **state) {
     free(want);
     set_free(&s);
   }
-  assert_true(noisy > 10000);
+  assert_true(noisy > 6 * most_cases(1500));
   noise_free(&profile);
   vertices_free(&out);
   average_free(&scratch);
@@ -332,7 +332,7 @@ static void what_is_dark_is_exactly_zero(void **state) {
   (void)state;
   average_scratch scratch = {0};
   vertices out = {0};
-  for (uint64_t seed = 0; seed < 300; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(300); ++seed) {
     rng r = rng_seeded(seed);
     uint32_t count = 1 + rng_below(&r, 100);
     double sum = 0;

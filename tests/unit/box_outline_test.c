@@ -100,7 +100,7 @@ static int same_area(const rectangle *a, const rectangle *b, double slack) {
 /* No larger and no smaller than what the window shows of the box, and as deep as the whole box. */
 static void perspective_is_exact(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 10000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(10000); ++seed) {
     rng r = rng_seeded(seed);
     view v = random_view(&r);
     dsm_box box = random_box(&r, v.origin);
@@ -146,7 +146,7 @@ static void a_box_that_nearly_touches(void **state) {
 /* Whatever point of any of some boxes the light and the window see, the sum of them holds. */
 static void random_points_are_inside(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 4000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(4000); ++seed) {
     rng r = rng_seeded(seed);
     view v = random_view(&r);
     int perspective = (int)rng_below(&r, 2);
@@ -178,7 +178,7 @@ static void random_points_are_inside(void **state) {
 static void orthographic_spans_the_corners(void **state) {
   (void)state;
   const rectangle everything = {-INFINITY, -INFINITY, INFINITY, INFINITY};
-  for (uint64_t seed = 0; seed < 2000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(2000); ++seed) {
     rng r = rng_seeded(seed);
     view v = random_view(&r);
     dsm_box box = random_box(&r, v.origin);
@@ -208,7 +208,7 @@ static int same(const outline *a, const outline *b) {
  * from far. */
 static void many_are_the_sum_of_each(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 2000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(2000); ++seed) {
     rng r = rng_seeded(seed);
     view v = random_view(&r);
     int perspective = (int)rng_below(&r, 2);

@@ -186,7 +186,7 @@ static void fog_needs_few_vertices(void **state) {
 
 static void ends_at_exactly_zero(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 3000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(3000); ++seed) {
     rng r = rng_seeded(seed);
     vertex e[MOST];
     int n = 2 + (int)rng_below(&r, MOST - 2);
@@ -249,7 +249,7 @@ static size_t random_function(rng *r, vertex *e, int may_grow) {
 static void random_functions_stay_within_the_tolerance(void **state) {
   (void)state;
   vertices out = {0};
-  for (uint64_t seed = 0; seed < 100000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(100000); ++seed) {
     rng r = rng_seeded(seed);
     vertex e[MOST];
     int may_grow = rng_below(&r, 4) == 0, channels = rng_below(&r, 2) ? 3 : 1;

@@ -100,7 +100,7 @@ static void damaged_maps_are_refused_or_read(void **state) {
   const char *seed = getenv("SEED");
   rng r = rng_seeded(seed ? strtoull(seed, NULL, 10) : 1);
   print_message("seed %llu\n", (unsigned long long)r.seed);   /* a crash says nothing */
-  int refused = 0, read = 0;
+  int refused = 0, read = 0, tools_own_memory = getenv("DSM_MOST_CASES") != NULL;   /* what asks for fewer needs a lot itself */
   for (int i = 0; i < MAPS; ++i) {
     made_map m = made_map_random(&r, rng_below(&r, 3) ? 1 : 6, 40, i % 3, 4);
     const char *path = made_path("damaged.exr");
@@ -109,7 +109,7 @@ static void damaged_maps_are_refused_or_read(void **state) {
     long before = most_memory();
     size_t size;
     unsigned char *good = bytes_of(path, &size), *bad = malloc(size);
-    for (int run = 0; run < RUNS_A_MAP; ++run) {
+    for (int run = 0; run < (int)most_cases(RUNS_A_MAP); ++run) {
       size_t less = size;
       memcpy(bad, good, size);
       for (uint32_t n = 1 + rng_below(&r, MOST_DAMAGES); n > 0; --n) less = damage(&r, bad, less);
@@ -118,7 +118,7 @@ static void damaged_maps_are_refused_or_read(void **state) {
       assert_seeded(&r, result == DSM_OK || result == DSM_REFUSED);
       refused += result == DSM_REFUSED;
       read += result == DSM_OK;
-      assert_seeded(&r, most_memory() - before <= MOST_MEGABYTES);
+      assert_seeded(&r, tools_own_memory || most_memory() - before <= MOST_MEGABYTES);
     }
     free(good);
     free(bad);

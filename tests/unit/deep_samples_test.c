@@ -69,7 +69,7 @@ static size_t random_function(rng *r, vertex *f, int coloured, int fine) {
 static void the_exponential_stays_near(void **state) {
   (void)state;
   static const double tolerances[] = {0.0005, 0.001, 0.01, 0.1};
-  for (uint64_t seed = 1; seed <= 4000; ++seed) {
+  for (uint64_t seed = 1; seed <= most_cases(4000); ++seed) {
     rng r = rng_seeded(seed);
     int coloured = (int)rng_below(&r, 2);
     double tolerance = tolerances[rng_below(&r, 4)];
@@ -92,7 +92,7 @@ static void the_exponential_stays_near(void **state) {
 /* Depths closer than floats can tell: still tidy, and right where all is past. */
 static void close_depths_make_one_step(void **state) {
   (void)state;
-  for (uint64_t seed = 1; seed <= 4000; ++seed) {
+  for (uint64_t seed = 1; seed <= most_cases(4000); ++seed) {
     rng r = rng_seeded(seed);
     vertex f[MOST];
     size_t count = random_function(&r, f, 1, 1);
@@ -108,7 +108,7 @@ static void close_depths_make_one_step(void **state) {
 
 static void sag_in_closed_form(void **state) {
   (void)state;
-  for (uint64_t seed = 1; seed <= 300; ++seed) {
+  for (uint64_t seed = 1; seed <= most_cases(300); ++seed) {
     rng r = rng_seeded(seed);
     double a = rng_unit(&r), b = a * (rng_below(&r, 2) ? rng_unit(&r) : 1 - rng_scale(&r, 1e-9, 1)), most = 0;
     for (int i = 0; i <= 20000; ++i) {
@@ -141,7 +141,7 @@ static void no_more_samples_than_needed(void **state) {
 static void there_and_back(void **state) {
   (void)state;
   const double there = 0.001, back = 0.004;
-  for (uint64_t seed = 1; seed <= 1000; ++seed) {
+  for (uint64_t seed = 1; seed <= most_cases(1000); ++seed) {
     rng r = rng_seeded(seed);
     vertex f[MOST];
     size_t count = random_function(&r, f, 1, 0);

@@ -123,7 +123,7 @@ static void foreign_ray_is_refused(void **state) {
 static void order_is_by_ray_then_front_and_stable(void **state) {
   (void)state;
   dsm_sink sink = {0};
-  for (uint64_t seed = 0; seed < 600; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(600); ++seed) {
     rng r = rng_seeded(seed);
     dsm_ray rays[40];
     uint32_t ray_count = rng_below(&r, 41), n = ray_count ? rng_below(&r, seed % 50 ? 300 : 20000) : 0;

@@ -57,7 +57,7 @@ static int shines(const dsm_light *light, const double q[3]) {
  * outermost pixels, half a pixel from the border, does not reach it. No use of projection_find. */
 static void casters_keep_out_of_the_margin(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 5000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(5000); ++seed) {
     rng r = rng_seeded(seed);
     dsm_box boxes[BOXES];
     dsm_light light = random_light(&r, boxes);
@@ -94,7 +94,7 @@ static void casters_keep_out_of_the_margin(void **state) {
 /* No side of any face is longer than asked for, and the longest is as long. */
 static void resolution_is_met(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 5000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(5000); ++seed) {
     rng r = rng_seeded(seed);
     dsm_box boxes[BOXES];
     dsm_light light = random_light(&r, boxes);
@@ -149,7 +149,7 @@ static void a_cubes_faces_look_six_ways(void **state) {
 /* The grid follows the casters' places around the light, not where both are nor how casters are ordered. */
 static void only_what_the_light_sees_matters(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 1000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(1000); ++seed) {
     rng r = rng_seeded(seed);
     dsm_box boxes[BOXES], moved[BOXES];
     dsm_light light = random_light(&r, boxes), other = light;

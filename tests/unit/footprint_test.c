@@ -38,7 +38,7 @@ static void up_to_a_pixel_nothing_changes(void **state) {
 /* The look-up's variance is that of the region and of the bilinear look-up at the finest level, along both axes. */
 static void variances_match(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 20000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(20000); ++seed) {
     rng r = rng_seeded(seed);
     double size = rng_scale(&r, 0.5, 200), ratio = rng_scale(&r, 1, 4), angle = rng_between(&r, 0, 6.3);
     double a[2] = {size * ratio * cos(angle), size * ratio * sin(angle)}, b[2] = {-size * sin(angle), size * cos(angle)};
@@ -101,7 +101,7 @@ static void continuous(void **state) {
 /* The derivative of the projection, against the difference of two points. */
 static void sides_are_projected(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 5000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(5000); ++seed) {
     rng r = rng_seeded(seed);
     projection p = {.perspective = (int)(seed % 2), .count = 1};
     double forward[3] = {rng_between(&r, -1, 1), rng_between(&r, -1, 1), rng_between(&r, 0.1, 1)}, length = 0;

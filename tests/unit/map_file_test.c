@@ -282,7 +282,7 @@ static void flipped_bit_of(int kind) {
   write_map(path, &m);
   size_t size;
   unsigned char *bytes = bytes_of(path, &size);
-  int late = 0, runs = 3000;
+  int late = 0, runs = (int)most_cases(3000);
   for (int i = 0; i < runs; ++i) {
     size_t at = (size_t)(rng_unit(&r) * (double)size);
     unsigned char before = bytes[at], flip = (unsigned char)(rng_below(&r, 2) ? 1u << rng_below(&r, 8) : 1 + rng_below(&r, 255));

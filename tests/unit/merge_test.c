@@ -114,7 +114,7 @@ static void merged_tiles_keep_their_bound(void **state) {
   (void)state;
   static const double tolerances[] = {0, 0.003, 0.02, 0.1};
   merge_scratch scratch = {0};
-  for (uint64_t seed = 1; seed <= 120; ++seed) {
+  for (uint64_t seed = 1; seed <= most_cases(120); ++seed) {
     rng r = rng_seeded(seed);
     tile_set set;
     double tolerance = tolerances[rng_below(&r, 4)];

@@ -17,7 +17,7 @@ static const pixel_filter BOX = {FILTER_BOX, 1}, TRIANGLE = {FILTER_TRIANGLE, 2}
 /* Every dyadic box of area 1/N holds one of N = 2^m points: rows, columns and cells. */
 static void powers_of_two_fill_all_strata(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 200; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(200); ++seed) {
     rng r = rng_seeded(seed);
     pixel_seed pixel = pixel_sample_seed(rng_below(&r, 6), rng_below(&r, 16384), rng_below(&r, 16384));
     uint32_t m = rng_below(&r, 9), n = 1u << m;

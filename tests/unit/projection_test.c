@@ -66,7 +66,7 @@ static int shines(const dsm_light *light, const double point[3]) {
  * through its pixel coordinates goes through it. */
 static void casters_are_inside_and_rays_come_back(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 6000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(6000); ++seed) {
     rng r = rng_seeded(seed);
     dsm_light light = random_light(&r, rng_below(&r, 3));
     dsm_box boxes[6];
@@ -200,7 +200,7 @@ static void cube_weights_are_continuous(void **state) {
   dsm_light light = {.size = sizeof light, .kind = DSM_LIGHT_POINT, .origin = {0.25, 0.5, -0.25}, .casters = &box, .caster_count = 1};
   projection p;
   fit(&light, SQUARE, 1, &p);
-  for (uint64_t seed = 0; seed < 300; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(300); ++seed) {
     rng r = rng_seeded(seed);
     double start[3], step[3], before[MAX_FACES] = {0};
     for (int i = 0; i < 3; ++i) {

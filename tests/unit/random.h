@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 typedef struct { uint64_t seed, state; } rng;
 
@@ -27,6 +28,13 @@ static inline double rng_scale(rng *r, double low, double high) {
 }
 /* In 0…n-1. */
 static inline uint32_t rng_below(rng *r, uint32_t n) { return (uint32_t)((rng_bits(r) >> 32) * n >> 32); }
+
+/* How many of n random cases are tried: all, or DSM_MOST_CASES where the environment asks for fewer, as under slow tools. */
+static inline uint64_t most_cases(uint64_t n) {
+  const char *text = getenv("DSM_MOST_CASES");
+  uint64_t asked = text ? strtoull(text, NULL, 10) : n;
+  return asked < n ? asked : n;
+}
 
 #define assert_seeded(r, condition) \
   do { \

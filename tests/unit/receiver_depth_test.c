@@ -60,7 +60,7 @@ static double plane_depth(const scene *s, double du, double dv) {
 /* The plane at its nearest within a pixel's footprint, by trying: covered, and by little more than it takes. */
 static void bias_covers_the_footprint(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 3000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(3000); ++seed) {
     rng r = rng_seeded(seed);
     scene s = random_scene(&r, seed % 3 > 0, 1e-4, 0.02);
     if (s.cosine < 0.03) continue;
@@ -88,7 +88,7 @@ static void two_thirds_are_behind_the_middle(void **state) {
   (void)state;
   enum { SIDE = 40 };
   int tried[2] = {0, 0};
-  for (uint64_t seed = 0; seed < 600; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(600); ++seed) {
     rng r = rng_seeded(seed);
     scene s = random_scene(&r, seed % 2, 1e-6, 1e-4);
     if (s.cosine < 0.1 || s.cosine > 0.9) continue;
@@ -106,13 +106,13 @@ static void two_thirds_are_behind_the_middle(void **state) {
     assert_seeded(&r, share > 0.61 && share < 0.74);
     ++tried[seed % 2];
   }
-  assert_true(tried[0] > 50 && tried[1] > 50);
+  assert_true(tried[0] > (int)most_cases(600) / 12 && tried[1] > (int)most_cases(600) / 12);
 }
 
 /* A rise is added as it is, and a bias that the settings fix takes the place of all that the plane tells. */
 static void rise_and_fixed_bias(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 500; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(500); ++seed) {
     rng r = rng_seeded(seed);
     scene s = random_scene(&r, seed % 2, 1e-4, 0.02);
     double du = rng_between(&r, -1, 1), dv = rng_between(&r, -1, 1), rise = rng_scale(&r, 1e-3, 10);

@@ -71,7 +71,7 @@ static dsm_receiver somewhere(rng *r) {
 /* Every look-up has the same bits, or the same refusal. */
 static void assert_same_answers(stage *a, stage *b, uint64_t seed) {
   rng r = rng_seeded(seed);
-  for (int i = 0; i < 4000; ++i) {
+  for (uint64_t i = 0; i < most_cases(4000); ++i) {
     dsm_receiver receiver = somewhere(&r);
     double x[3] = {-1, -1, -1}, y[3] = {-1, -1, -1};
     dsm_result one = dsm_api.lookup(a->worker, &receiver, x), two = dsm_api.lookup(b->worker, &receiver, y);

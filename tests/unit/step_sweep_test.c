@@ -102,7 +102,7 @@ static void the_average_is_the_direct_sum(void **state) {
   (void)state;
   step_scratch scratch = {0};
   vertices mean = {0}, direct = {0};
-  for (uint64_t seed = 0; seed < 3000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(3000); ++seed) {
     rng r = rng_seeded(seed);
     batch b;
     functions f;
@@ -134,7 +134,7 @@ static void the_noise_is_the_measured_noise(void **state) {
   noise_profile got = {0};
   vertices mean = {0};
   size_t noisy = 0;
-  for (uint64_t seed = 0; seed < 3000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(3000); ++seed) {
     rng r = rng_seeded(seed);
     batch b;
     functions f;
@@ -153,7 +153,7 @@ static void the_noise_is_the_measured_noise(void **state) {
     functions_free(&f);
     batch_free(&b);
   }
-  assert_true(noisy > 10000);
+  assert_true(noisy > 3 * most_cases(3000));
   noise_free(&got);
   vertices_free(&mean);
   step_free(&scratch);
@@ -223,7 +223,7 @@ static void what_is_dark_is_exactly_zero(void **state) {
   (void)state;
   step_scratch scratch = {0};
   vertices mean = {0};
-  for (uint64_t seed = 0; seed < 300; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(300); ++seed) {
     rng r = rng_seeded(seed);
     uint32_t rays = 1 + rng_below(&r, 100);
     batch b;

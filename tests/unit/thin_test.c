@@ -30,7 +30,7 @@ static void stays_within_the_slack(void **state) {
   (void)state;
   vertices f = {0}, thin = {0};
   size_t all = 0, left = 0;
-  for (uint64_t seed = 0; seed < 5000; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(5000); ++seed) {
     rng r = rng_seeded(seed);
     double slack = rng_scale(&r, 1e-6, 1e-2), noise[MOST], level = 0, thinned[MOST];
     random_function(&r, &f);

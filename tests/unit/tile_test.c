@@ -120,7 +120,7 @@ static void wide_from_where_16_bits_end(void **state) {
 /* Grey, coloured, lit and marked in turns as chance has it; some with more than 16 bits count. */
 static void any_mixture(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 400; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(400); ++seed) {
     rng r = rng_seeded(seed);
     planned p = {0};
     uint32_t most = seed % 4 ? 9 : 1500;

@@ -340,7 +340,7 @@ static void random_events_match_the_product(void **state) {
   (void)state;
   event e[MOST];
   vertices f = {0};
-  for (uint64_t seed = 0; seed < 400; ++seed) {
+  for (uint64_t seed = 0; seed < most_cases(400); ++seed) {
     rng r = rng_seeded(seed);
     size_t n = rng_below(&r, seed % 100 ? 20 : MOST);
     double scale = rng_scale(&r, 1e-6, 1e5), tolerance = rng_below(&r, 8) ? rng_scale(&r, 1e-4, 0.4) : 0;
