@@ -253,6 +253,13 @@ typedef struct {
                              void (*wanted)(void *data, const dsm_tiles *tiles), void *data);   /* [one] */
   /* Makes one of the finest tiles, as a look-up would. */
   dsm_result (*bake_tile)(dsm_worker *worker, uint32_t face, uint32_t x, uint32_t y);           /* [one] */
+
+  /* For `trace`. How many rays of the batch, from each multiple of that number on, belong to one map pixel, of which nothing but
+   * their average is wanted; 1 where each ray counts. They are spread evenly, and neighbours follow each other: each quarter
+   * of them fills a quarter of the pixel, and so on. */
+  uint32_t (*sink_pixel_rays)(const dsm_sink *sink);
+  /* The ray does not count, nor what was reported of it: the pixel's other rays tell as much. One of them must be left. */
+  dsm_result (*sink_spare)(dsm_sink *sink, uint32_t ray);
 } dsm_api_table;
 
 /* The one exported symbol. */

@@ -40,4 +40,6 @@ const dsm_api_table dsm_api = {
   .sink_mark = sink_mark,
   .tiles_wanted = map_tiles_wanted,
   .bake_tile = map_bake_tile,
+  .sink_pixel_rays = sink_pixel_rays,
+  .sink_spare = sink_spare,
 };

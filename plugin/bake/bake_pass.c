@@ -53,12 +53,13 @@ static void make_rays(const bake_job *job, const tile_key *key, uint32_t place, 
   }
 }
 
-static dsm_result trace_batch(const bake_job *job, bake_scratch *s, uint32_t rays, tile_tally *tally)
+static dsm_result trace_batch(const bake_job *job, bake_scratch *s, uint32_t samples, uint32_t rays, tile_tally *tally)
 {
   dsm_result result = sink_begin(&s->sink, s->rays, rays);
   if (result != DSM_OK)
     return result;
   double start = seconds();
+  s->sink.pixel_rays = samples;
   result = job->host->trace(job->host_data, s->rays, rays, finest_tolerance(job->settings), &s->sink);
   tally->trace_seconds += seconds() - start;
   tally->rays += rays;
@@ -78,7 +79,7 @@ dsm_result bake_pass(const bake_job *job, bake_scratch *s, const tile_key *key, 
     uint32_t count = batch < places->count - done ? batch : places->count - done;
     for (uint32_t i = 0; i < count; i++)
       make_rays(job, key, places->place[done + i], s->path, samples, s->rays + (size_t)i * samples);
-    result = paused(job) ? DSM_CANCELLED : trace_batch(job, s, count * samples, tally);
+    result = paused(job) ? DSM_CANCELLED : trace_batch(job, s, samples, count * samples, tally);
     for (uint32_t i = 0; i < count && result == DSM_OK; i++)
       result = paused(job) ? DSM_CANCELLED
                            : bake_pixel(job, &s->pixel, &s->sink, &limits, i * samples, samples, &s->stored,

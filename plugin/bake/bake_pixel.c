@@ -73,7 +73,7 @@ static pixel_kind kind_of(const event *events, size_t count)
   return kind;
 }
 
-/* A pixel with volume spans: the transmittance of every ray, then their average and its noise. */
+/* A pixel with volume spans: the transmittance of every ray that counts, then their average and its noise. */
 static dsm_result average_volume(const bake_job *job, pixel_scratch *s, const dsm_sink *sink, uint32_t first_ray,
                                  uint32_t samples)
 {
@@ -82,17 +82,21 @@ static dsm_result average_volume(const bake_job *job, pixel_scratch *s, const ds
   if (room != DSM_OK)
     return room;
   s->transmittances.count = 0;
-  for (uint32_t i = 0; i < samples; i++) {
-    size_t begin = sink->first[first_ray + i], end = sink->first[first_ray + i + 1];
-    s->first[i] = s->transmittances.count;
-    s->weights[i] = 1.0 / samples;
+  uint32_t rays = 0;
+  for (uint32_t i = first_ray; i < first_ray + samples; i++) {
+    if (sink->spared[i])
+      continue;
+    size_t begin = sink->first[i], end = sink->first[i + 1];
+    s->first[rays++] = s->transmittances.count;
     dsm_result result = transmittance_build(sink->ordered + begin, end - begin, tolerance,
                                             &s->transmittances);
     if (result != DSM_OK)
       return result;
   }
-  s->first[samples] = s->transmittances.count;
-  average_input in = {s->transmittances.data, s->first, s->weights, samples};
+  s->first[rays] = s->transmittances.count;
+  for (uint32_t i = 0; i < rays; i++)
+    s->weights[i] = 1.0 / rays;
+  average_input in = {s->transmittances.data, s->first, s->weights, rays};
   return average_and_noise(&in, &s->sweep, wants_noise(job->settings) ? &s->noise : NULL, &s->average);
 }
 
@@ -125,6 +129,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
     return DSM_OK;
   const event *events = sink->ordered + begin;
   pixel_kind kind = kind_of(events, count);
+  kind.volume |= memchr(sink->spared + first_ray, 1, samples) != NULL;
   step_input steps = {events, count, first_ray, samples, kind.coloured ? 3 : 1};
   s->average.count = 0;
   dsm_result result = kind.volume ? average_volume(job, s, sink, first_ray, samples)
@@ -136,7 +141,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   int channels = pixel->coloured ? 3 : 1;
   const vertices *clean = &s->average;
   tally->vertices_in += s->average.count;
-  if (wants_noise(job->settings))
+  if (job->settings->accuracy > 0)
     pixel->variance = noise_lasting(&s->noise, &s->average, limits->thin, limits->thin_at_least);
   if (is_automatic(job->settings))
     pixel->tolerance = noise_rms(&s->noise, s->average.count);

@@ -21,11 +21,15 @@ dsm_result sink_begin(dsm_sink *sink, const dsm_ray *rays, uint32_t ray_count) {
     if (first) sink->first = first;
     unsigned char *marked = realloc(sink->marked, room + 1);
     if (marked) sink->marked = marked;
-    if (!first || !marked) return DSM_NO_MEMORY;
+    unsigned char *spared = realloc(sink->spared, room + 1);
+    if (spared) sink->spared = spared;
+    if (!first || !marked || !spared) return DSM_NO_MEMORY;
     sink->room_rays = room;
   }
   sink->ray_count = ray_count;
+  sink->pixel_rays = 1;
   memset(sink->marked, 0, ray_count);
+  memset(sink->spared, 0, ray_count);
   memset(sink->first, 0, ((size_t)ray_count + 1) * sizeof *sink->first);
   return DSM_OK;
 }
@@ -86,6 +90,17 @@ dsm_result sink_mark(dsm_sink *sink, uint32_t ray) {
     return DSM_INVALID;
   }
   sink->marked[ray] = 1;
+  return DSM_OK;
+}
+
+uint32_t sink_pixel_rays(const dsm_sink *sink) { return sink->pixel_rays; }
+
+dsm_result sink_spare(dsm_sink *sink, uint32_t ray) {
+  if (ray >= sink->ray_count || sink->pixel_rays < 2) {
+    ++sink->dropped;
+    return DSM_INVALID;
+  }
+  sink->spared[ray] = 1;
   return DSM_OK;
 }
 
@@ -155,5 +170,6 @@ void sink_free(dsm_sink *sink) {
   free(sink->first);
   free(sink->sorted);
   free(sink->marked);
+  free(sink->spared);
   *sink = (dsm_sink){0};
 }

@@ -25,6 +25,8 @@ struct dsm_sink {
   const event *ordered;    /* sink_order's output: `events` if they came in order, else `sorted` */
   event *sorted;
   unsigned char *marked;   /* a byte a ray: its light can grow with depth */
+  unsigned char *spared;   /* a byte a ray: it does not count */
+  uint32_t pixel_rays;     /* see sink_pixel_rays; sink_begin sets it to 1 */
   size_t room_rays, room_sorted;
   uint64_t dropped, clamped;
 };
@@ -38,6 +40,8 @@ dsm_result sink_begin(dsm_sink *sink, const dsm_ray *rays, uint32_t ray_count);
 dsm_result sink_surface(dsm_sink *sink, uint32_t ray, double depth, const double transmittance[3]);
 dsm_result sink_span(dsm_sink *sink, uint32_t ray, double front, double back, const double transmittance[3]);
 dsm_result sink_mark(dsm_sink *sink, uint32_t ray);
+uint32_t sink_pixel_rays(const dsm_sink *sink);
+dsm_result sink_spare(dsm_sink *sink, uint32_t ray);
 /* Sorts events by ray, then by front depth; equal depths keep the host's order. O(n log n), and O(n) with no copy
  * where the host has reported them so. */
 dsm_result sink_order(dsm_sink *sink);

@@ -25,6 +25,25 @@ namespace
 /// A fading span is halved at most this often.
 const int kMostHalvings = 16;
 
+/// The mean of a few of a pixel's rays is certain if its standard error is not above this many times the tolerance, which is
+/// never taken to be finer than this.
+const double kCertain = 2.0, kLeastTolerance = 1.0e-4;
+
+/// Rays of one pixel integrate with errors to both sides, and each is far nearer than its bound (measured on clouds). So the
+/// bound of one step may be this many times as wide, for so many rays.
+double Slackness(unsigned int rays)
+{
+	const double kMost = 8.0;
+
+	return min(max(0.5 * rays, 1.0), kMost);
+}
+
+/// Whether a few rays can stand for so many, and it pays.
+bool CanSpare(unsigned int rays)
+{
+	return (rays >= 16) && (rays % 16 == 0);
+}
+
 double FadeFactor(double colour, double distance, double power, double length)
 {
 	return colour + (1.0 - colour) / (1.0 + pow(length / distance, power));
@@ -37,6 +56,7 @@ ShadowEvents::ShadowEvents(shared_ptr<SceneData> scene, TraceThreadData *thread,
 	Trace(scene, thread, quality & ~Q_VOLUME, noCooperate, noMedia, noRadiosity),
 	casters(c),
 	volumes((quality & Q_VOLUME) != 0),
+	slackness(1.0),
 	shaded(0),
 	containersOf(NULL),
 	hits(c, thread),
@@ -52,15 +72,20 @@ dsm_result ShadowEvents::TraceRays(const LightSource& light, const dsm_ray *rays
 	if(casters.HasVolumes())
 		FindContainers(light);
 
+	const unsigned int ofPixel = ShadowPlugin::Api().sink_pixel_rays(sink);
+
+	slackness = Slackness(ofPixel);
+
 	for(unsigned int done = 0, ready; done < count; done += ready)
 	{
 		ready = hits.Find(rays + done, count - done);
-		for(unsigned int i = 0; i < ready; i++)
+		for(unsigned int i = 0, next; i < ready; i = next)
 		{
-			if((i & 0x0f) == 0)
-				Task::CurrentTaskCooperate();
+			const bool whole = volumes && casters.HasVolumes() && CanSpare(ofPixel) && ((done + i) % ofPixel == 0) && (i + ofPixel <= ready);
 
-			const dsm_result result = ReportRay(light, rays[done + i], hits.Of(i), done + i, tolerance, sink);
+			next = i + (whole ? ofPixel : 1);
+			const dsm_result result = whole ? ReportPixel(light, rays + done, i, ofPixel, tolerance, sink, done)
+			                                : ReportRay(light, rays + done, i, tolerance, sink, done);
 			if(result != DSM_OK)
 				return result;
 		}
@@ -68,10 +93,63 @@ dsm_result ShadowEvents::TraceRays(const LightSource& light, const dsm_ray *rays
 	return DSM_OK;
 }
 
-void ShadowEvents::SpanSink::Span(double front, double back, const DblRGBColour& transmittance)
+dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray *rays, unsigned int ray, double tolerance, dsm_sink *sink, unsigned int offset)
 {
-	if(result == DSM_OK)
-		result = ShadowPlugin::Api().sink_span(sink, ray, front, back, *transmittance);
+	if((ray & 0x0f) == 0)
+		Task::CurrentTaskCooperate();
+	Follow(light, rays[ray], hits.Of(ray), tolerance, story);
+	return story.Tell(offset + ray, sink);
+}
+
+/// Whether rays of one pixel meet the same surfaces, or miss the same.
+bool ShadowEvents::AllMeetTheSame(unsigned int begin, unsigned int count)
+{
+	first = hits.Of(begin);
+	for(unsigned int i = 1; i < count; i++)
+	{
+		const vector<ShadowHits::Hit>& found = hits.Of(begin + i);
+
+		if(found.size() != first.size())
+			return false;
+		for(size_t k = 0; k < found.size(); k++)
+			if((found[k].caster != first[k].caster) || (found[k].number != first[k].number) || ((found[k].surface == ShadowHits::kOpaque) != (first[k].surface == ShadowHits::kOpaque)))
+				return false;
+	}
+	return !first.empty() && (first[0].surface != ShadowHits::kOpaque);
+}
+
+/// Reports the rays of one map pixel. What they pass through changes little from one to the next, unless they meet different surfaces;
+/// and each integral of a density is dear. So where a few of them agree, the others are spared.
+dsm_result ShadowEvents::ReportPixel(const LightSource& light, const dsm_ray *rays, unsigned int begin, unsigned int count, double tolerance, dsm_sink *sink, unsigned int offset)
+{
+	// of each quarter another quarter: of the pixel's rows and columns, each has one (see sink_pixel_rays)
+	static const unsigned int kQuarter[kFew] = { 0, 2, 1, 3 };
+	const unsigned int step = count / kFew;
+	unsigned int chosen[kFew], followed = 0;
+	dsm_result result = DSM_OK;
+
+	Task::CurrentTaskCooperate();
+	bool few = AllMeetTheSame(begin, count), hasMedia = false;
+	for(; (followed < kFew) && few; followed++)
+	{
+		chosen[followed] = begin + followed * step + kQuarter[followed] * step / kFew;
+		Follow(light, rays[chosen[followed]], hits.Of(chosen[followed]), tolerance, stories[followed]);
+		hasMedia = hasMedia || stories[followed].HasMedia();
+	}
+	few = few && hasMedia && ShadowStory::Agree(stories, kFew, kCertain * max(tolerance, kLeastTolerance));
+
+	for(unsigned int i = 0; (i < count) && (result == DSM_OK); i++)
+	{
+		const unsigned int quarter = i / step;
+
+		if((quarter < followed) && (begin + i == chosen[quarter]))
+			result = stories[quarter].Tell(offset + begin + i, sink);
+		else if(few)
+			result = ShadowPlugin::Api().sink_spare(sink, offset + begin + i);
+		else
+			result = ReportRay(light, rays, begin + i, tolerance, sink, offset);
+	}
+	return result;
 }
 
 /// Stock puts no media on the way from the light to the first surface, even if the light stands in them. The containers
@@ -126,15 +204,15 @@ RGBColour ShadowEvents::ShadeSurface(const LightSource& light, const dsm_ray& ra
 	return colour;
 }
 
-/// Reports hits and what lies between them. Light that is gone stays gone: nothing behind matters.
-dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray, const vector<ShadowHits::Hit>& found, unsigned int index, double tolerance, dsm_sink *sink)
+/// Finds what dims a ray: hits, and what lies between them. Light that is gone stays gone: nothing behind matters.
+void ShadowEvents::Follow(const LightSource& light, const dsm_ray& ray, const vector<ShadowHits::Hit>& found, double tolerance, ShadowStory& story)
 {
-	const dsm_api_table& api = ShadowPlugin::Api();
 	double visible = 1.0;
 	size_t i = 0;
 
+	story.Clear();
 	if(found.empty())
-		return DSM_OK;
+		return;
 	if(casters.HasVolumes())
 		EnterContainers(light, ray);
 
@@ -149,10 +227,7 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray,
 			for(int k = 0; k < 3; k++)
 				colour[k] = c[k];
 		}
-
-		dsm_result result = api.sink_surface(sink, index, hit.depth, colour);
-		if(result != DSM_OK)
-			return result;
+		story.Surface(hit.depth, colour);
 
 		visible *= max(colour[0], max(colour[1], colour[2]));
 		if(visible <= 0.0)
@@ -165,17 +240,12 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray& ray,
 
 		Toggle(interior);
 		if((interior->Fade_Power > 0.0) && (fabs(interior->Fade_Distance) > EPSILON) && (std::find(inside.begin(), inside.end(), interior) != inside.end()))
-			result = ReportFade(*interior, hit.depth, next, tolerance, index, sink);
-		if((result == DSM_OK) && volumes)
-		{
-			SpanSink spans(sink, index);
-			visible = ReportMedia(ray, hit.depth, next, visible, tolerance, spans);
-			result = spans.result;
-		}
-		if(result != DSM_OK)
-			return result;
+			Fade(*interior, hit.depth, next, tolerance, story);
+		if(volumes)
+			visible = PassMedia(ray, hit.depth, next, visible, tolerance, story);
 	}
-	return IsOpen(ray, (i < found.size()) ? &found[i] : NULL) ? api.sink_mark(sink, index) : DSM_OK;
+	if(IsOpen(ray, (i < found.size()) ? &found[i] : NULL))
+		story.Mark();
 }
 
 /// Sheets, height fields and other open things begin what they do not end. Stock then goes by what the ray of the camera has
@@ -212,9 +282,8 @@ bool ShadowEvents::IsOpen(const dsm_ray& ray, const ShadowHits::Hit *last)
 
 /// Fading takes one factor, 1 / (1 + (d/D)^p), from an object's surface on the light's side to the next surface only.
 /// It is no exponential, so the span is halved until a chord in the logarithm follows it.
-dsm_result ShadowEvents::ReportFade(const Interior& interior, double front, double back, double tolerance, unsigned int index, dsm_sink *sink)
+void ShadowEvents::Fade(const Interior& interior, double front, double back, double tolerance, ShadowStory& story)
 {
-	const dsm_api_table& api = ShadowPlugin::Api();
 	const double distance = interior.Fade_Distance, power = interior.Fade_Power;
 	const bool exponential = (power >= 1000);
 	double begin = front;
@@ -245,16 +314,13 @@ dsm_result ShadowEvents::ReportFade(const Interior& interior, double front, doub
 			end = 0.5 * (begin + end);
 		}
 
-		const dsm_result result = api.sink_span(sink, index, begin, end, t);
-		if(result != DSM_OK)
-			return result;
+		story.Span(begin, end, t);
 		begin = end;
 	}
-	return DSM_OK;
 }
 
 /// Media count only while every container around is hollow.
-double ShadowEvents::ReportMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, SpanSink& sink)
+double ShadowEvents::PassMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, ShadowStory& story)
 {
 	media.Clear();
 	for(vector<Interior *>::const_iterator i(inside.begin()); i != inside.end(); i++)
@@ -268,7 +334,7 @@ double ShadowEvents::ReportMedia(const dsm_ray& ray, double front, double back, 
 				media.Add(*medium);
 		}
 	}
-	return media.Integrate(ray, front, back, visible, tolerance, sink);
+	return media.Integrate(ray, front, back, visible, tolerance, slackness, story);
 }
 
 }

@@ -6,7 +6,7 @@
 
 #include "backend/render/trace.h"
 #include "backend/shadow/shadowhits.h"
-#include "backend/shadow/shadowmedia.h"
+#include "backend/shadow/shadowstory.h"
 
 namespace pov
 {
@@ -24,22 +24,15 @@ class ShadowEvents : public Trace
 		POV_ULONG Shaded() const { return shaded; }              ///< surfaces
 		POV_ULONG Evaluations() const { return media.evaluations; } ///< of densities
 	private:
-		class SpanSink : public ShadowMedia::Sink
-		{
-			public:
-				SpanSink(dsm_sink *sink, unsigned int ray) : result(DSM_OK), sink(sink), ray(ray) { }
-				virtual void Span(double front, double back, const DblRGBColour& transmittance);
-				dsm_result result;
-			private:
-				dsm_sink *sink;
-				unsigned int ray;
-		};
+		/// Rays of a map pixel that stand for all of it where they agree.
+		enum { kFew = 4 };
 
 		const ShadowCasters& casters;
 		CooperateFunctor noCooperate;
 		MediaFunctor noMedia;
 		RadiosityFunctor noRadiosity;
 		const bool volumes;
+		double slackness; ///< of a step of an integral, see ShadowMedia::Integrate
 		POV_ULONG shaded;
 
 		const LightSource *containersOf; ///< the light that `containers` belongs to
@@ -50,15 +43,20 @@ class ShadowEvents : public Trace
 		Ray shade;
 		vector<Interior *> inside;
 		ShadowMedia media;
+		ShadowStory story, stories[kFew];
+		vector<ShadowHits::Hit> first; ///< those of a pixel's first ray
 
 		void FindContainers(const LightSource& light);
 		void EnterContainers(const LightSource& light, const dsm_ray& ray);
 		void Toggle(Interior *interior);
 		RGBColour ShadeSurface(const LightSource& light, const dsm_ray& ray, Intersection& isect);
-		dsm_result ReportRay(const LightSource& light, const dsm_ray& ray, const vector<ShadowHits::Hit>& found, unsigned int index, double tolerance, dsm_sink *sink);
+		dsm_result ReportRay(const LightSource& light, const dsm_ray *rays, unsigned int ray, double tolerance, dsm_sink *sink, unsigned int offset);
+		dsm_result ReportPixel(const LightSource& light, const dsm_ray *rays, unsigned int begin, unsigned int count, double tolerance, dsm_sink *sink, unsigned int offset);
+		bool AllMeetTheSame(unsigned int begin, unsigned int count);
+		void Follow(const LightSource& light, const dsm_ray& ray, const vector<ShadowHits::Hit>& found, double tolerance, ShadowStory& story);
 		bool IsOpen(const dsm_ray& ray, const ShadowHits::Hit *last);
-		dsm_result ReportFade(const Interior& interior, double front, double back, double tolerance, unsigned int index, dsm_sink *sink);
-		double ReportMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, SpanSink& sink);
+		void Fade(const Interior& interior, double front, double back, double tolerance, ShadowStory& story);
+		double PassMedia(const dsm_ray& ray, double front, double back, double visible, double tolerance, ShadowStory& story);
 };
 
 }

@@ -23,7 +23,7 @@ const int kLeastSteps = 4, kMostSteps = 64;
 /// A step is halved until it is this much shorter than the first steps: a jump is found to that precision.
 const double kShortest = 1.0 / 128.0;
 
-/// Share of the tolerance that one step may be wrong by. Steps err to both sides.
+/// Share of the tolerance that one step may be wrong by, before slackness. Steps err to both sides.
 const double kStepShare = 0.3;
 
 /// Share of the tolerance by which light within a span may differ from the exponential.
@@ -74,7 +74,7 @@ void Quarters(double a, double b, double slopeA, double slopeB, double out[5])
 
 }
 
-ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0)
+ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0)
 {
 }
 
@@ -96,7 +96,7 @@ void ShadowMedia::Add(const ShadowMedium& medium)
 	grey = grey && others.empty() && medium.Mapped()->Transfer().Grey() && (Least(medium.Scale()) == Largest(medium.Scale()));
 }
 
-double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, double visible, double wanted, Sink& sink)
+double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, double visible, double wanted, double slackness, Sink& sink)
 {
 	const double tolerance = max(wanted, kLeastTolerance), dark = kDarkShare * tolerance;
 	Stretch stretch;
@@ -107,6 +107,7 @@ double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, doubl
 	ray = &r;
 	visibleAtFront = visible;
 	allowed = kStepShare * tolerance;
+	allowedSmooth = slackness * allowed;
 	Begin(front, back);
 
 	for(double depth = front; (depth < back) && (points.back().visible > dark); depth = stretch.end)
@@ -166,7 +167,7 @@ void ShadowMedia::Begin(double front, double back)
 		}
 	}
 	firstStep = max(firstStep, length / kMostSteps);
-	allowedInRun = allowed;
+	allowedInRun = allowedSmooth;
 	shortest = kHuge;
 }
 
@@ -329,7 +330,7 @@ void ShadowMedia::Run(double dark)
 			points.resize(points.size() - 2, points.front());
 		}
 	}
-	allowedInRun = allowed;
+	allowedInRun = allowedSmooth;
 	shortest = kHuge;
 }
 

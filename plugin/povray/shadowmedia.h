@@ -37,8 +37,10 @@ class ShadowMedia
 
 		/// @param[in]      visible     largest channel of the light that is left at `front`: the less, the coarser the steps
 		/// @param[in]      tolerance   of light at any depth
+		/// @param[in]      slackness   how many times as wrong a step may be where nothing makes neighbouring steps and rays err
+		///                             to the same side
 		/// @return                     what is visible at `back`
-		double Integrate(const dsm_ray& ray, double front, double back, double visible, double tolerance, Sink& sink);
+		double Integrate(const dsm_ray& ray, double front, double back, double visible, double tolerance, double slackness, Sink& sink);
 
 		mutable POV_ULONG evaluations; ///< of all densities at a point
 	private:
@@ -89,6 +91,7 @@ class ShadowMedia
 		const dsm_ray *ray;
 		double visibleAtFront;
 		double allowed;               ///< error of light in one step
+		double allowedSmooth;         ///< with slackness
 		double firstStep;             ///< where nothing is known
 		vector<Part> parts;           ///< in the order of the media
 		vector<Point> points;

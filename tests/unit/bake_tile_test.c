@@ -80,6 +80,63 @@ static void pixels_are_their_rays_average(void **state) {
   }
 }
 
+/* Of each four rays the first counts; the others report nothing, or what is not so. */
+static dsm_result trace_few(void *data, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink) {
+  static const double dark[3] = {0, 0, 0};
+  assert_true(sink_pixel_rays(sink) == 16 && count % 16 == 0);
+  dsm_result result = trace_world(data, rays, count, tolerance, sink);
+  for (uint32_t i = 0; i < count && result == DSM_OK; ++i) {
+    if (i % 4 == 0) continue;
+    if (i % 4 == 2) result = sink_surface(sink, i, rays[i].near_depth, dark);
+    if (result == DSM_OK) result = sink_spare(sink, i);
+  }
+  return result;
+}
+
+static void spared_rays_do_not_count(void **state) {
+  (void)state;
+  enum { RAYS = 16 };
+  pixel_point path[RAYS];
+  pixel_sample_path(RAYS, path);
+  for (int k = 0; k < 4; ++k) {   /* with fog and without; glass, and a ground that nothing passes */
+    shape all[] = {sphere_at(0, 0, 3, 0.9, k & 1 ? 0 : 0.5), fog_in((dsm_box){{-1, -1, 2}, {1, 1, 4}}, 0.6, 0.6, 0.6, 0)};
+    stage s;
+    stage_open(&s, all, k < 2 ? 2 : 1, spot_at(0, 0, 0, 0, 0, 1, 25), WORDS("resolution 40", "samples 16", "tolerance 0"));
+    s.map->host.trace = trace_few;
+    bake_scratch scratch = {0};
+    tile_tally tally;
+    const tile *t = bake(&s, 1, 1, &scratch, &tally);
+    for (uint32_t place = 0; place < TILE_PIXELS; ++place)
+      for (double z = 2; z < 4.2; z += 0.1) {
+        double want = 0;
+        for (uint32_t i = 0; i < RAYS; i += 4) {
+          pixel_filter filter = {FILTER_BOX, 1};
+          uint32_t px = 16 + place % TILE_SIDE, py = 16 + place / TILE_SIDE;
+          double o[2];
+          dsm_ray ray;
+          dsm_sink sink = {0};
+          vertices list = {0};
+          pixel_sample_offset(&filter, pixel_sample_seed(0, px, py), path[i], o);
+          projection_ray(&s.map->projection, 0, px + 0.5 + o[0], py + 0.5 + o[1], &ray);
+          assert_int_equal(sink_begin(&sink, &ray, 1), DSM_OK);
+          assert_int_equal(trace_world(&s.w, &ray, 1, 0, &sink), DSM_OK);
+          assert_int_equal(sink_order(&sink), DSM_OK);
+          assert_int_equal(transmittance_build(sink.ordered, sink.count, 0, &list), DSM_OK);
+          want += vertices_at(list.data, list.count, z).c[0] / 4;
+          sink_free(&sink);
+          vertices_free(&list);
+        }
+        visibility stored = tile_visibility(t, place);
+        uint32_t hint = 0;
+        double got = visibility_at(&stored, z - t->near_depth, &hint).c[0];
+        if (fabs(got - want) > 2e-5) fail_msg("case %d: at depth %g of pixel %u: %g, not %g", k, z, place, got, want);
+      }
+    tile_destroy(t);
+    bake_scratch_free(&scratch);
+    stage_close(&s);
+  }
+}
+
 /* Of a slanted sheet of glass the automatic tolerance keeps the plateaus to 0.002 and few vertices. */
 static void slanted_glass_is_small_and_exact(void **state) {
   (void)state;
@@ -257,6 +314,7 @@ int main(void) {
   memset(&all_wanted, 1, sizeof all_wanted);
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pixels_are_their_rays_average),
+    cmocka_unit_test(spared_rays_do_not_count),
     cmocka_unit_test(slanted_glass_is_small_and_exact),
     cmocka_unit_test(steps_of_one_ray_merge),
     cmocka_unit_test(nothing_in_the_way_is_the_shared_tile),

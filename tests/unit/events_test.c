@@ -119,6 +119,24 @@ static void foreign_ray_is_refused(void **state) {
   sink_free(&sink);
 }
 
+static void only_rays_of_a_pixel_can_be_spared(void **state) {
+  (void)state;
+  dsm_ray rays[] = {ray(0, 10), ray(0, 10)};
+  dsm_sink sink = {0};
+  assert_int_equal(sink_begin(&sink, rays, 2), DSM_OK);
+  assert_int_equal(sink_pixel_rays(&sink), 1);
+  assert_int_equal(sink_spare(&sink, 1), DSM_INVALID);
+  sink.pixel_rays = 2;
+  assert_int_equal(sink_pixel_rays(&sink), 2);
+  assert_int_equal(sink_spare(&sink, 2), DSM_INVALID);
+  assert_int_equal(sink_spare(&sink, 1), DSM_OK);
+  assert_true(!sink.spared[0] && sink.spared[1]);
+  assert_int_equal(sink.dropped, 2);
+  assert_int_equal(sink_begin(&sink, rays, 2), DSM_OK);
+  assert_true(sink_pixel_rays(&sink) == 1 && !sink.spared[1]);
+  sink_free(&sink);
+}
+
 /* Each event carries its number, as a transmittance; coarse depths make many equal. */
 static void order_is_by_ray_then_front_and_stable(void **state) {
   (void)state;
@@ -210,6 +228,7 @@ int main(void) {
     cmocka_unit_test(transmittance_is_brought_into_range),
     cmocka_unit_test(reversed_span_is_turned_round),
     cmocka_unit_test(foreign_ray_is_refused),
+    cmocka_unit_test(only_rays_of_a_pixel_can_be_spared),
     cmocka_unit_test(order_is_by_ray_then_front_and_stable),
     cmocka_unit_test(what_is_in_order_stays_where_it_is),
     cmocka_unit_test(next_batch_keeps_counters_only),
