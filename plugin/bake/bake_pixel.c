@@ -61,14 +61,17 @@ static dsm_result make_room(pixel_scratch *s, uint32_t samples)
 }
 
 /* What the events of a pixel are. */
-typedef struct { int coloured, volume; } pixel_kind;
+typedef struct { int coloured, volume, surface; } pixel_kind;
 
 static pixel_kind kind_of(const event *events, size_t count)
 {
-  pixel_kind kind = {0, 0};
+  pixel_kind kind = {0, 0, 0};
   for (size_t i = 0; i < count; i++) {
     kind.coloured |= !rgb_is_grey(events[i].transmittance);
-    kind.volume |= events[i].back > events[i].front;
+    if (events[i].back > events[i].front)
+      kind.volume = 1;
+    else
+      kind.surface = 1;
   }
   return kind;
 }
@@ -130,6 +133,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   const event *events = sink->ordered + begin;
   pixel_kind kind = kind_of(events, count);
   kind.volume |= memchr(sink->spared + first_ray, 1, samples) != NULL;
+  pixel->kind = (unsigned char)((kind.volume ? PIXEL_VOLUME : 0) | (kind.surface ? PIXEL_SURFACE : 0));
   step_input steps = {events, count, first_ray, samples, kind.coloured ? 3 : 1};
   s->average.count = 0;
   dsm_result result = kind.volume ? average_volume(job, s, sink, first_ray, samples)

@@ -5,15 +5,18 @@
 
 #include "bake/seconds.h"
 #include "bake/tile_need.h"
+#include "core/face_fit.h"
 #include "map/pack_tile.h"
 
-/* Rays a pixel that tell how many more it takes. Most pixels are refined, lit or dark, and need no more. */
-enum { FIRST_RAYS = 4 };
+/* Rays a pixel, before any of them tell how many more it takes. At the first level two find what there is to refine; in smooth volumes one
+ * does. Of an edge, one ray in each of more pixels tells most (measured); but where all of a tile is wanted, it is full of things smaller
+ * than a pixel, and their mean is what counts. */
+enum { FIRST_RAYS = 2, VOLUME_RAYS = 1, FILLED_RAYS = 4, PROBED = 4 };
 
 /* `accuracy` is the root mean square over a picture, most of which is lit, dark or smooth, and of which each image pixel averages look-ups,
- * as each look-up averages pixels. So the mean of a noisy pixel may have a standard error of this many times the aim (measured; see
- * tests/bench/accuracy.sh). */
-static const double NOISE_SHARE = 12;
+ * as each look-up averages pixels. So the noise of a tile's pixels may have a root mean square of this many times the aim (measured; see
+ * tests/bench/accuracy.sh). A pixel counts as noisy as a whole if one of its rays has NOISY variance. */
+static const double NOISE_SHARE = 25, NOISY = 0.1;
 
 /* The wanted pixels of the tile that lie on its face. */
 static place_list places_on_face(const face *f, const tile_key *key, const wanted_pixels *wanted)
@@ -49,22 +52,25 @@ static uint32_t wanted_rays(double variance, uint32_t rays, double aim, uint32_t
   return wanted < most ? wanted : most;
 }
 
-/* One round of more rays, all anew, where the mean of those so far is too uncertain and no finer level will be read instead. *added:
- * whether there was anything to do. */
+/* One round of more rays, all anew, where the mean of those so far is too uncertain. *added: whether there was anything to do. */
 static dsm_result bake_more(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all,
                             uint32_t rays[TILE_PIXELS], int *added, tile_tally *tally)
 {
-  double aim = NOISE_SHARE * job->settings->accuracy;
+  double aim = NOISE_SHARE * job->settings->accuracy, noisy = 0;
   uint32_t wanted[TILE_PIXELS];
+  for (uint32_t k = 0; k < all->count; k++)
+    noisy += fmin(1, ray_variance(s->pixels, rays, all->place[k]) / NOISY);
+  aim /= sqrt(fmax(noisy, TILE_SIDE) / TILE_PIXELS);
   for (uint32_t k = 0; k < all->count; k++) {
-    uint32_t place = all->place[k];
+    uint32_t place = all->place[k], most = job->settings->samples;
     const baked_pixel *p = &s->pixels[place];
-    double variance = ray_variance(s->pixels, rays, place);
-    wanted[place] = p->marked || p->need == 255 ? 0 : wanted_rays(variance, rays[place], aim, job->settings->samples);
+    if (p->need > 0 && most > FILLED_RAYS)
+      most = FILLED_RAYS;   /* a finer level is likely to be read instead */
+    wanted[place] = p->marked ? 0 : wanted_rays(ray_variance(s->pixels, rays, place), rays[place], aim, most);
   }
   dsm_result result = DSM_OK;
   *added = 0;
-  for (uint32_t samples = 2 * FIRST_RAYS; result == DSM_OK; samples *= 2) {
+  for (uint32_t samples = 2; result == DSM_OK; samples *= 2) {
     if (samples > job->settings->samples)
       samples = job->settings->samples;
     place_list list = {.count = 0};
@@ -82,20 +88,65 @@ static dsm_result bake_more(const bake_job *job, bake_scratch *s, const tile_key
   return result;
 }
 
+/* How many rays the pixels of a tile of the first level take, from every PROBEDth of them in both directions. */
+static dsm_result probe(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all, uint32_t *samples,
+                        tile_tally *tally)
+{
+  place_list few = {.count = 0};
+  for (uint32_t k = 0; k < all->count; k++)
+    if (all->place[k] % PROBED == 0 && all->place[k] / TILE_SIDE % PROBED == 0)
+      few.place[few.count++] = all->place[k];
+  dsm_result result = few.count ? bake_pass(job, s, key, FIRST_RAYS, &few, tally) : DSM_OK;
+  int kinds = 0;
+  double noisy = 0;
+  for (uint32_t k = 0; k < few.count; k++) {
+    const baked_pixel *p = &s->pixels[few.place[k]];
+    kinds |= p->kind;
+    noisy += fmin(1, FIRST_RAYS * p->variance / NOISY);
+  }
+  *samples = kinds == PIXEL_VOLUME ? VOLUME_RAYS : 2 * noisy > few.count ? FILLED_RAYS : FIRST_RAYS;
+  s->stored.count = 0;
+  return result;
+}
+
+/* One for an aim of 0.01, and more for less, as the error of their mean falls with the square root (measured). A power of two, as all
+ * numbers of rays but the last. */
+static uint32_t edge_rays(double aim)
+{
+  uint32_t rays = 1;
+  while (rays < FILLED_RAYS && rays * aim * aim < 0.999e-4)
+    rays *= 2;
+  return rays;
+}
+
+static dsm_result choose_rays(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all, uint32_t *samples,
+                              tile_tally *tally)
+{
+  dsm_result result = DSM_OK;
+  if (key->level >= first_level(job->settings))
+    result = probe(job, s, key, all, samples, tally);
+  else
+    *samples = 16 * all->count > 15 * TILE_PIXELS ? FILLED_RAYS : edge_rays(job->settings->accuracy);
+  if (*samples > job->settings->samples)
+    *samples = job->settings->samples;
+  return result;
+}
+
 /* Few rays for all pixels, then more where they are wanted, until there is nothing to add. */
 static dsm_result bake_adaptively(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all,
                                   tile_tally *tally)
 {
-  uint32_t rays[TILE_PIXELS] = {0}, samples = FIRST_RAYS;
-  if (samples > job->settings->samples)
-    samples = job->settings->samples;
+  uint32_t rays[TILE_PIXELS] = {0}, samples;
+  dsm_result result = choose_rays(job, s, key, all, &samples, tally);
+  if (result != DSM_OK)
+    return result;
   for (uint32_t k = 0; k < all->count; k++)
     rays[all->place[k]] = samples;
   const face *f = &job->projection->faces[key->face];
   double size = ldexp(fmax(f->pixel_u, f->pixel_v), (int)key->level);
   int perspective = job->projection->perspective;
   need_limits limits = {perspective ? size : 0, perspective ? 0 : size, job->settings->accuracy};
-  dsm_result result = bake_pass(job, s, key, samples, all, tally);
+  result = bake_pass(job, s, key, samples, all, tally);
   for (int added = 1; result == DSM_OK && added;) {
     if (key->level > 0)
       tile_need(s->pixels, &s->stored, &limits);

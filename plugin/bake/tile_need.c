@@ -155,22 +155,49 @@ static int is_in_question(const layer *l, uint32_t place, double aim)
   return high > aim * aim && low < 1 - aim * aim;
 }
 
-/* Keeps the largest of what bends around each pixel. */
+/* Keeps the largest of what bends at each pixel. */
 static void keep_largest(const baked_pixel pixels[TILE_PIXELS], const layer *l, double aim, double most[TILE_PIXELS])
 {
   double bends[TILE_PIXELS];
   measure(pixels, l, bends);
   for (uint32_t i = 0; i < TILE_PIXELS; i++)
     if (is_known(&pixels[i]) && is_in_question(l, i, aim))
-      most[i] = fmax(most[i], around(pixels, bends, i) / SQUARED_BENDS);
+      most[i] = fmax(most[i], bends[i] / SQUARED_BENDS);
+}
+
+static int is_at_border(uint32_t place)
+{
+  uint32_t x = place % TILE_SIDE, y = place / TILE_SIDE;
+  return x == 0 || x == TILE_SIDE - 1 || y == 0 || y == TILE_SIDE - 1;
+}
+
+/* Whether interpolation fails at a pixel: where it bends, and where it lies between two that do, as the one in the middle of which an edge
+ * runs. At the tile's border, where a neighbour is not seen, any neighbour that is seen stands for it. */
+static int is_bent(const double most[TILE_PIXELS], uint32_t place, double least)
+{
+  if (!is_at_border(place))
+    return most[place] > least || (most[place - 1] > least && most[place + 1] > least)
+        || (most[place - TILE_SIDE] > least && most[place + TILE_SIDE] > least);
+  tile_patch patch = tile_around(place);
+  for (uint32_t k = 0; k < patch.count; k++)
+    if (most[patch.place[k]] > least)
+      return 1;
+  return 0;
+}
+
+static unsigned char need_of(double times)
+{
+  return times > 1 ? (unsigned char)fmin(NEED_MOST, 1 + NEED_OCTAVE * log2(times)) : 0;
 }
 
 void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits)
 {
-  double depths[DEPTHS], most[TILE_PIXELS] = {0}, share = BEND_SHARE * limits->aim, least = share * share;
+  double depths[DEPTHS], most[TILE_PIXELS], share = BEND_SHARE * limits->aim, least = share * share;
   uint32_t count = choose_depths(pixels, stored, depths);
   int channels = has_colour(pixels) ? 3 : 1;
   layer l;
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    most[i] = -INFINITY;   /* less than noise makes of it is below 0 */
   for (int c = 0; c < channels && count > 0; c++) {
     for (uint32_t k = 0; k < count; k++) {
       fill_layer(pixels, stored, limits, depths[k], c, &l);
@@ -182,5 +209,10 @@ void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const ne
     }
   }
   for (uint32_t i = 0; i < TILE_PIXELS; i++)
-    pixels[i].need = pixels[i].marked ? 255 : (unsigned char)(255 * fmax(0, fmin(1, (most[i] - least) / least)) + 0.5);
+    most[i] = most[i] > -INFINITY ? most[i] : 0;
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    pixels[i].need = pixels[i].marked ? NEED_ALWAYS : 0;
+    if (is_known(&pixels[i]) && is_bent(most, i, least))
+      pixels[i].need = need_of(around(pixels, most, i) / least);
+  }
 }

@@ -22,8 +22,8 @@ typedef struct {
   double aim;                     /* error, root mean square over a picture */
 } need_limits;
 
-/* Sets `need` of all pixels of a tile from their vertices and variance: 0 where interpolation is good enough, 255 where a finer
- * level is to be read instead. */
+/* Sets `need` of all pixels of a tile from their vertices and variance, as map/tile.h describes it: 0 where interpolation is good
+ * enough. */
 void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits);
 
 #endif

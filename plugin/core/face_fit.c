@@ -14,7 +14,7 @@ static const double COS_WIDEST = 0.5;   /* 60 degrees: beyond, a perspective pix
  * all of its light would fall beside the face. Squared. */
 static const double COS_ROUNDING = 0x1p-48;
 
-enum { FIRST_PIXELS = 128 };   /* of the level at which a map with `accuracy` begins */
+enum { FIRST_PIXELS = 256 };   /* of the level at which a map with `accuracy` begins */
 
 /* What a fit is made for. */
 typedef struct {

@@ -22,8 +22,8 @@ static inline double blur_pixels(const dsm_settings *settings)
 }
 uint32_t blur_level(const dsm_settings *settings);
 
-/* The level at which a map with `accuracy` begins, from which it is refined where that is needed: of some 128 pixels along a
- * face. 0: all is baked at the finest level. */
+/* The level at which a map with `accuracy` begins, from which it is refined where that is needed: of some 256 pixels along a
+ * face. What its pixels do not show is never found. 0: all is baked at the finest level. */
 uint32_t first_level(const dsm_settings *settings);
 
 #endif

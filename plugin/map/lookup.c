@@ -34,11 +34,15 @@ static const double CLOSE = 0.25;
  * a smaller map would do. */
 enum { FOOTPRINT_LEVEL = 5 };
 
-/* With `accuracy` each level that is read costs rays of its own. So long footprints are read coarser, and all of them with pixels of so
- * many times `accuracy` the area: what an image pixel averages is no sharper for finer ones (measured). */
+/* With `accuracy` each level that is read costs rays of its own. So long footprints are read coarser, and all of them with pixels of
+ * COARSER * accuracy^(4/3) times the area, at most: the error that an edge leaves in an image pixel goes with the 3/2 power of a map
+ * pixel's width. COARSER is measured, with 3 x 3 camera rays in an image pixel. */
 enum { REFINED_PROBES = 4,
-       BLIND_LEVELS = 3 };   /* finer than the first, at most, for points without a footprint: media, and what is seen in mirrors */
-static const double COARSER = 150;
+       BLIND_LEVELS = 2 };   /* finer than the first, at most, for points without a footprint: media, and what is seen in mirrors */
+static const double COARSER = 1020, MOST_COARSER = 16;
+
+/* From the first places where a finer level counts, NEED_SHARE, to those where all of it does. */
+static const double NEED_FADES = 0.25;
 
 /* A stored depth is off by up to half a step of a float, 2^-24 of its distance from the tile's near depth, and in coarser levels by
  * some more. This much keeps a receiver in front of its own step, and far casters in the tile do not make it more. */
@@ -199,7 +203,9 @@ static dsm_result add_level(view *v, const footprint *f, uint32_t level, double 
   return result;
 }
 
-/* How much the place wants a finer level than this one, from 0 to 1: interpolated, so that no seam shows where levels meet. */
+/* How much the place wants a finer level than this one, from 0 to 1: interpolated, so that no seam shows where levels meet. Both levels
+ * count while the share of pixels that want more grows from NEED_SHARE on, and while the error is less than an octave above what is let
+ * pass. */
 static dsm_result need_at(view *v, uint32_t level, double x, double y, double *need)
 {
   const face *f = &v->worker->map->projection.faces[v->at->face];
@@ -210,6 +216,7 @@ static dsm_result need_at(view *v, uint32_t level, double x, double y, double *n
   int32_t i = below(x), j = below(y);
   double across = x - i, up = y - j;
   const double weight[4] = {(1 - across) * (1 - up), across * (1 - up), (1 - across) * up, across * up};
+  double octaves = 0, share = 0;
   *need = 0;
   for (uint32_t k = 0; k < 4; k++) {
     uint32_t px = (uint32_t)i + (k & 1), py = (uint32_t)j + (k >> 1);
@@ -220,8 +227,16 @@ static dsm_result need_at(view *v, uint32_t level, double x, double y, double *n
     dsm_result result = worker_tile(v->worker, &key, &t);
     if (result != DSM_OK)
       return result;
-    *need += weight[k] / 255 * tile_need_at(t, py % TILE_SIDE * TILE_SIDE + px % TILE_SIDE);
+    uint32_t n = tile_need_at(t, py % TILE_SIDE * TILE_SIDE + px % TILE_SIDE);
+    if (n == NEED_ALWAYS) {
+      *need = 1;
+      return DSM_OK;
+    }
+    octaves += weight[k] * (n > 0 ? n - 1 : 0) / NEED_OCTAVE;
+    share += n > 0 ? weight[k] : 0;
   }
+  if (share > NEED_SHARE)
+    *need = fmin(1, (share - NEED_SHARE) / NEED_FADES) * fmin(1, octaves / share);
   return DSM_OK;
 }
 
@@ -317,7 +332,7 @@ static footprint choose(const view *v, int has_footprint)
   if (map->first_level == 0)
     return footprint_of(&region, most, alone && has_footprint ? FOOTPRINT_PROBES : 1);
   footprint f = footprint_of(&region, most, alone && has_footprint ? REFINED_PROBES : 1);
-  double times = has_footprint ? fmin(4, COARSER * map->settings.accuracy) : 1;
+  double times = has_footprint ? fmin(MOST_COARSER, COARSER * pow(map->settings.accuracy, 4.0 / 3)) : 1;
   f = footprint_scaled(f, times, most);
   if (!has_footprint && f.level + BLIND_LEVELS < map->first_level)
     f = (footprint){map->first_level - BLIND_LEVELS, 0, 1, 0, 0};

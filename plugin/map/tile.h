@@ -43,6 +43,12 @@ typedef struct {
   uint32_t x, y;   /* in tiles */
 } tile_key;
 
+/* How much a look-up at a pixel wants the next finer level. 0: that would tell nothing more. Else 1 + NEED_OCTAVE * log2 of the squared
+ * error that interpolation makes there, in units of what is let pass; in NEED_ALWAYS there is nothing to read at this level. Between
+ * pixels the finer level counts where more than NEED_SHARE of them, weighted, want it. */
+enum { NEED_OCTAVE = 16, NEED_MOST = 254, NEED_ALWAYS = 255 };
+#define NEED_SHARE 0.5
+
 typedef enum { TILE_STORED, TILE_LIT, TILE_FAILED } tile_kind;
 
 enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4,   /* what of the optional parts a tile has */
@@ -64,9 +70,7 @@ typedef struct {
   uint32_t count[TILE_PIXELS];             /* vertices; 0: lit */
   unsigned char coloured[TILE_PIXELS];     /* three values a vertex instead of one */
   unsigned char marked[TILE_PIXELS];       /* light can grow here: nothing stored, trace the ray */
-  /* How much a look-up here wants the next finer level, from 0: it would tell nothing more, to 255: it is to be read instead of
-   * this one; in between both count. */
-  unsigned char need[TILE_PIXELS];
+  unsigned char need[TILE_PIXELS];         /* see NEED_OCTAVE */
 } tile_plan;
 
 /* Shared by all tiles without a caster, and by all that could not be baked. */
@@ -100,7 +104,7 @@ static inline int tile_is_coloured(const tile *t, uint32_t place)
       && tile_bit(t, t->words - (t->layout & TILE_MARKED ? 2 : 1) * (TILE_PIXELS / 8), place);
 }
 
-/* From 0 to 255; see tile_plan. */
+/* See NEED_OCTAVE. */
 static inline uint32_t tile_need_at(const tile *t, uint32_t place)
 {
   return t->layout & TILE_REFINED ? ((const unsigned char *)t)[t->size - TILE_PIXELS + place] : 0;

@@ -18,12 +18,37 @@ static dsm_result wants(dsm_worker *worker, uint32_t face, uint32_t level, uint3
     return DSM_OK;
   dsm_result result = worker_tile(worker, &key, &t);
   if (result == DSM_OK)
-    *out = tile_need_at(t, y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE) > 0;
+    *out = (unsigned char)tile_need_at(t, y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE);
   return result;
 }
 
-/* A look-up at a point reads the pixels whose centres are less than one pixel away in x and in y. Those of a level and of the next
- * coarser one that meet in this way are (x, y) and what is around (x/2, y/2). */
+/* Whether look-ups up to half a coarser pixel from a pixel's centre can want it. `around` are the coarser pixels around it; along an axis
+ * the largest share of wanting pixels is at one of three places: the two ends, and the middle of a coarser pixel between them.
+ *
+ *   coarser pixels    |     0     |     1     |     2     |      weights in quarters
+ *   an even pixel           <-----|x----->    |           |      3 1 0, 0 4 0, 0 3 1
+ *   an odd one              |     |     <-----x|----->           1 3 0, 0 4 0, 0 1 3 */
+static unsigned char wish_of(unsigned char around[3][3], uint32_t odd_x, uint32_t odd_y)
+{
+  static const uint32_t quarters[2][3][3] = {{{3, 1, 0}, {0, 4, 0}, {0, 3, 1}}, {{1, 3, 0}, {0, 4, 0}, {0, 1, 3}}};
+  unsigned char most = 0;
+  for (uint32_t k = 0; k < 9; k++) {
+    const uint32_t *across = quarters[odd_x][k % 3], *up = quarters[odd_y][k / 3];
+    uint32_t sixteenths = 0;
+    unsigned char here = 0;
+    for (uint32_t n = 0; n < 9; n++) {
+      uint32_t weight = across[n % 3] * up[n / 3];
+      unsigned char need = around[n / 3][n % 3];
+      sixteenths += need == NEED_ALWAYS && weight ? 16 : need ? weight : 0;
+      if (weight && need > here)
+        here = need;
+    }
+    if (sixteenths > 16 * NEED_SHARE && here > most)
+      most = here;
+  }
+  return most;
+}
+
 dsm_result wanted_pixels_of(dsm_worker *worker, const tile_key *key, wanted_pixels *out)
 {
   unsigned char coarse[AROUND][AROUND];
@@ -33,12 +58,12 @@ dsm_result wanted_pixels_of(dsm_worker *worker, const tile_key *key, wanted_pixe
       if (result != DSM_OK)
         return result;
     }
-  memset(out, 0, sizeof *out);
   for (uint32_t place = 0; place < TILE_PIXELS; place++) {
-    uint32_t x = place % TILE_SIDE / 2, y = place / TILE_SIDE / 2;
-    for (uint32_t j = y; j <= y + 2; j++)
-      for (uint32_t i = x; i <= x + 2; i++)
-        out->pixel[place] |= coarse[j][i];
+    uint32_t x = place % TILE_SIDE, y = place / TILE_SIDE;
+    unsigned char around[3][3];
+    for (uint32_t j = 0; j < 3; j++)
+      memcpy(around[j], &coarse[y / 2 + j][x / 2], 3);
+    out->pixel[place] = wish_of(around, x % 2, y % 2);
   }
   return DSM_OK;
 }

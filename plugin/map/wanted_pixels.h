@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* Which pixels of a tile look-ups can come to: with `accuracy`, those around pixels of the next coarser level that want a finer one. */
+/* Which pixels of a tile look-ups can come to: with `accuracy`, those around pixels of the next coarser level that want a finer one.
+ * 0: none do; else how much it is wanted there, as tile_need_at says. */
 #ifndef DSM_MAP_WANTED_PIXELS_H
 #define DSM_MAP_WANTED_PIXELS_H
 
