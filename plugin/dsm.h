@@ -176,6 +176,7 @@ typedef struct {
   double bake_seconds;     /* of all workers, host's tracing included */
   double trace_seconds;    /* the part of bake_seconds spent in host->trace */
   uint64_t samples;        /* depth maps: compared by all look-ups; zero for others */
+  uint64_t tiles_again;    /* made once more after they had been given up */
 } dsm_statistics;
 
 /* A square of a face's finest tiles, (x, y) to (past_x - 1, past_y - 1), of which one tile of `level` is made. */

@@ -42,6 +42,6 @@ dsm_result baker_worker_create(dsm_map *map, void *host_data, dsm_worker **worke
       destroy(&b->maker);
   }
   if (result != DSM_OK)
-    map_report(map, 2, "There is no memory for a thread's part in a deep shadow map.");
+    map_report(map, 2, "There is no memory for a thread's part in a shadow map.");
   return result;
 }

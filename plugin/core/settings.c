@@ -170,7 +170,7 @@ static dsm_result check(const dsm_parameter *row, const char *word, const double
     return DSM_INVALID;
   }
   if (count < row->min_count || count > row->max_count || (count && !numbers)) {
-    say(why, "'%s' was given %u numbers; ", row->name, (unsigned)count);
+    say(why, "'%s' was given %u number%s; ", row->name, (unsigned)count, count == 1 ? "" : "s");
     say_takes(why, row);
     return DSM_INVALID;
   }

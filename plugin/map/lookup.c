@@ -13,6 +13,9 @@ typedef struct {
   receiver_plane planes[2];
   uint32_t plane_count;   /* 0: read at the point's own depth */
   int automatic;          /* bias */
+  int grazing;            /* the light, on the first plane: see hides_more */
+  double pixel;           /* width of a pixel here, scene units */
+  double blind;           /* light that arrives by pixels in which the surface hides what stands on it, weighted */
   double own_rounding;    /* of the receiver's depth itself */
   double lost_grey;       /* share of light that does not arrive, weighted: in pixels without colour */
   rgb lost;               /* and in those with colour */
@@ -48,6 +51,16 @@ static const double NEED_FADES = 0.25;
  * some more. This much keeps a receiver in front of its own step, and far casters in the tile do not make it more. */
 static const double DEPTH_ROUNDING = 0x1p-21;
 
+/* Light is grazing where the plane goes so many times deeper within a pixel than the pixel is wide (88.6 degrees), and a bound that asks for
+ * less bias than the plane does is no help if it is that of an object more than so many pixels deep: what stands on it is stepped over. */
+static const double GRAZING = 40, LARGE = 40;
+
+/* So much of the light that is left in front of the surface must be missing beyond what the surface itself takes. */
+static const double HIDDEN = 0.3;
+
+/* Where so much is lost by all pixels together, those that are blind are not believed. */
+static const double SHADOWED = 0.02;
+
 /* Whether much light is lost between depth z and where `seen` of it is left. */
 static int is_close(const visibility *function, double z, uint32_t channel, double seen)
 {
@@ -55,6 +68,28 @@ static int is_close(const visibility *function, double z, uint32_t channel, doub
   uint32_t hint = 0;
   double before = visibility_find(function, z, &hint, &place) ? visibility_value(function, &place, channel) : 1;
   return before - seen > CLOSE * before;
+}
+
+/* Under grazing light: whether something else than the surface hides the point, at depth z, from the light, of which `seen` arrives in
+ * front of the surface. The surface itself leaves a part of the pixel in front of z that follows from its plane: at least `left`, whether the
+ * filter is flat or has a peak. Where that is little, the pixel is blind to what stands on the surface. */
+static int hides_more(view *v, const visibility *function, double z, double du, double dv, const double seen[3],
+                      double weight)
+{
+  const receiver_plane *p = &v->planes[0];
+  double rise = (p->slope_u * du + p->slope_v * dv) / p->reach, left = rise > 0 ? 0.5 - rise : 0.5 - 0.5 * rise;
+  if (left < HIDDEN) {
+    v->blind += weight * (function->channels == 1 ? seen[0] : fmax(seen[0], fmax(seen[1], seen[2])));
+    return 0;
+  }
+  visibility_place at;
+  uint32_t hint = 0;
+  if (!visibility_find(function, z, &hint, &at))
+    return 0;
+  for (uint32_t c = 0; c < function->channels; c++)
+    if (seen[c] > 2 * LEAST && visibility_value(function, &at, c) < (fmin(left, 1) - HIDDEN) * seen[c])
+      return 1;
+  return 0;
 }
 
 /* Reads a pixel in front of where the receiver's own surface can be. Every plane bounds the surface by itself, so the
@@ -81,6 +116,8 @@ static dsm_result add_surface(view *v, const tile *t, const visibility *function
       seen[c] = visibility_value(function, &front, c);
     in_doubt |= v->automatic && tangent <= other && seen[c] > 2 * LEAST;
   }
+  if (v->grazing && (tangent <= other || other > LARGE * v->pixel) && hides_more(v, function, z, du, dv, seen, weight))
+    return DSM_TRACE;
   in_doubt = in_doubt && visibility_find(function, z - receiver_middle(&v->planes[0], du, dv), hint, &middle);
   for (uint32_t c = 0; c < function->channels; c++) {
     double taken = in_doubt ? seen[c] - visibility_value(function, &middle, c) : 0;
@@ -187,6 +224,9 @@ static void see_planes(view *v, const footprint *f, uint32_t level)
   receiver_region region = {0.5 * (size - baked) + map->support * baked, size + 0.5 * (f->probes - 1) * apart};
   for (uint32_t k = 0; k < v->plane_count; k++)
     v->planes[k] = receiver_plane_seen(&map->projection, v->at, &v->receiver->planes[k], &region, map->settings.bias);
+  double width = map->projection.faces[v->at->face].pixel_u;   /* pixels are square, or nearly */
+  v->grazing = v->planes[0].reach > GRAZING * region.half * width && v->automatic;
+  v->pixel = v->planes[0].depth > 0 ? width * v->at->depth : width;
 }
 
 static dsm_result add_level(view *v, const footprint *f, uint32_t level, double share)
@@ -345,13 +385,14 @@ static dsm_result add_wide(view *v, int has_footprint)
 {
   footprint f = choose(v, has_footprint);
   for (;;) {
-    double grey = v->lost_grey;
+    double grey = v->lost_grey, blind = v->blind;
     rgb lost = v->lost;
     dsm_result result = add_footprint(v, &f);
     if (result != DSM_TRACE || (f.level == 0 && f.coarser == 0 && f.probes == 1) || v->worker->map->first_level > 0)
       return result;
     v->lost_grey = grey;
     v->lost = lost;
+    v->blind = blind;
     f = (footprint){f.level > 0 ? f.level - 1 : 0, 0, 1, 0, 0};
   }
 }
@@ -390,6 +431,7 @@ static dsm_result look_up(dsm_worker *worker, const dsm_receiver *receiver, doub
   v.receiver = receiver;
   v.lost_grey = 0;
   v.lost = rgb_grey(0);
+  v.blind = 0;
   v.plane_count = receiver->plane_count;
   v.automatic = map->settings.bias < 0;
   for (uint32_t i = 0; i < count; i++) {
@@ -399,6 +441,8 @@ static dsm_result look_up(dsm_worker *worker, const dsm_receiver *receiver, doub
     if (result != DSM_OK)
       return result;
   }
+  if (v.blind > LEAST && v.lost_grey + fmax(v.lost.c[0], fmax(v.lost.c[1], v.lost.c[2])) > SHADOWED)
+    return DSM_TRACE;
   /* what is lost is summed, not what is left, so that an unshadowed point is 1 exactly; the weights add up
    * to 1 but for rounding, and where all is lost nothing may be left of that */
   for (int c = 0; c < 3; c++) {

@@ -17,6 +17,9 @@ static const double SUPPORT_SAFETY = 1.25;
 
 static const double MEGABYTE = 1024 * 1024;
 
+/* A cache is too small once so many tiles have been made again, and more than in the first place: that is most of the work. */
+enum { MANY_AGAIN = 100 };
+
 static const double LARGEST = 1e150;   /* squares of lengths must stay finite */
 
 static int valid_vector(const double v[3])
@@ -31,28 +34,28 @@ static int valid_vector(const double v[3])
 static const char *check_light(dsm_light *light)
 {
   if (light->kind > DSM_LIGHT_PARALLEL)
-    return "The deep shadow map's light is of an unknown kind.";
+    return "The shadow map's light is of an unknown kind.";
   if (!valid_vector(light->origin))
-    return "The deep shadow map's light has no finite origin.";
+    return "The shadow map's light has no finite origin.";
   if (light->kind != DSM_LIGHT_POINT) {
     const double *d = light->direction;
     double length = valid_vector(d) ? sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) : 0;
     if (!(length > 0))
-      return "The deep shadow map's light has no direction.";
+      return "The shadow map's light has no direction.";
     for (int i = 0; i < 3; i++)
       light->direction[i] /= length;
   }
   if (light->kind == DSM_LIGHT_SPOT && !(light->cos_angle >= -1 && light->cos_angle <= 1))
-    return "The deep shadow map's light has a cosine of its half angle outside -1 to 1.";
+    return "The shadow map's light has a cosine of its half angle outside -1 to 1.";
   if (light->kind == DSM_LIGHT_PARALLEL && !(light->radius >= 0))
-    return "The deep shadow map's light has a negative radius.";
+    return "The shadow map's light has a negative radius.";
   if (light->caster_count && !light->casters)
-    return "The deep shadow map was given a number of casters but not their boxes.";
+    return "The shadow map was given a number of casters but not their boxes.";
   for (uint64_t k = 0; k < light->caster_count; k++) {
     const dsm_box *b = &light->casters[k];
     if (!valid_vector(b->low) || !valid_vector(b->high)
         || b->low[0] > b->high[0] || b->low[1] > b->high[1] || b->low[2] > b->high[2])
-      return "The deep shadow map was given a caster without a finite, ordered box.";
+      return "The shadow map was given a caster without a finite, ordered box.";
   }
   return NULL;
 }
@@ -78,7 +81,7 @@ dsm_result map_create(const dsm_host *host, const dsm_light *light, const dsm_se
   if (!host || host->size < sizeof *host || !host->trace)
     return DSM_INVALID;   /* too short to hold `report`, or of no use */
   if (!light || light->size < sizeof *light)
-    return refuse(host, DSM_INVALID, "The host's description of the deep shadow map's light is too short.");
+    return refuse(host, DSM_INVALID, "The host's description of the shadow map's light is too short.");
   dsm_light checked = *light;
   const char *wrong = check_light(&checked);
   if (wrong)
@@ -100,7 +103,7 @@ dsm_result map_create_framed(const dsm_host *host, const dsm_light *light, const
   *out = NULL;
   dsm_map *map = calloc(1, sizeof *map);
   if (!map)
-    return refuse(host, DSM_NO_MEMORY, "There is no memory for a deep shadow map.");
+    return refuse(host, DSM_NO_MEMORY, "There is no memory for a shadow map.");
   map->host = *host;
   map->light = *light;
   map->settings = *settings;
@@ -112,7 +115,7 @@ dsm_result map_create_framed(const dsm_host *host, const dsm_light *light, const
   map->projection = *faces;
   if (tile_store_create(&map->store, &map->projection, (uint64_t)(map->settings.cache * MEGABYTE)) != DSM_OK) {
     free(map);
-    return refuse(host, DSM_NO_MEMORY, "There is no memory for the tile table of a deep shadow map.");
+    return refuse(host, DSM_NO_MEMORY, "There is no memory for the tile table of a shadow map.");
   }
   *out = map;
   return DSM_OK;
@@ -179,23 +182,32 @@ void map_count_made(dsm_map *map, const tile_key *key, const tile_tally *tally, 
     map->tiles_baked += !failed;
     map->tiles_failed += (uint64_t)failed;
   }
+  else
+    map->tiles_again++;
   int tell_failure = tell_once(failed, &map->told_failure);
   int tell_events = tell_once(tally->events_dropped || tally->events_clamped, &map->told_bad_events);
+  int tell_small = tell_once(map->tiles_again > MANY_AGAIN && map->tiles_again > map->tiles_baked, &map->told_small);
   int tell_full = tell_once(cache->spool && spool_is_full(cache->spool), &map->told_full);
   pthread_mutex_unlock(&map->store.mutex);
 
   if (tell_events) {
     char text[200];
-    snprintf(text, sizeof text, "A deep shadow map was given events with impossible numbers; in the first such "
+    snprintf(text, sizeof text, "A shadow map was given events with impossible numbers; in the first such "
              "tile %llu were dropped and %llu corrected.", (unsigned long long)tally->events_dropped,
              (unsigned long long)tally->events_clamped);
     map_report(map, 1, text);
   }
   if (tell_failure)
-    map_report(map, 1, "A tile of a deep shadow map could not be baked (is there too little memory?); shadows "
+    map_report(map, 1, "A tile of a shadow map could not be baked (is there too little memory?); shadows "
                "there are ray-traced.");
+  if (tell_small) {
+    char text[200];
+    snprintf(text, sizeof text, "A shadow map's 'cache' of %g MB is too small for the tiles that the picture looks at: most of "
+             "them are baked again and again. A larger one saves time.", map->settings.cache);
+    map_report(map, 1, text);
+  }
   if (tell_full)
-    map_report(map, 1, "The temporary file for what a deep shadow map's cache cannot hold takes no more (is the disk full?); "
+    map_report(map, 1, "The temporary file for what a shadow map's cache cannot hold takes no more (is the disk full?); "
                "parts of the map are baked again when they are needed.");
 }
 
@@ -242,6 +254,7 @@ void map_statistics(const dsm_map *map, dsm_statistics *out)
   s.vertices = map->tally.vertices;
   s.tiles_read = map->tiles_read;
   s.tiles_evicted = map->store.cache.evicted;
+  s.tiles_again = map->tiles_again;
   s.bytes = bookkeeping + map->store.cache.bytes;
   s.bytes_most = bookkeeping + map->store.cache.bytes_most;
   s.bake_seconds = map->tally.bake_seconds;

@@ -42,9 +42,9 @@ struct dsm_map {
 
   /* all below under store.mutex */
   tile_tally tally;
-  uint64_t tiles_baked, tiles_failed, tiles_read;
+  uint64_t tiles_baked, tiles_failed, tiles_read, tiles_again;
   uint64_t next_tile;      /* see whole_map.h */
-  int told_bad_events, told_failure, told_full;
+  int told_bad_events, told_failure, told_full, told_small;
   struct dsm_worker *workers;
   uint64_t samples;        /* compared by those who have left */
 };

@@ -49,6 +49,7 @@ struct Sum
 		maps.bytes_most += s.bytes_most;
 		maps.tiles_read += s.tiles_read;
 		maps.tiles_evicted += s.tiles_evicted;
+		maps.tiles_again += s.tiles_again;
 		maps.bake_seconds += s.bake_seconds;
 		maps.trace_seconds += s.trace_seconds;
 		maps.samples += s.samples;
@@ -154,7 +155,7 @@ string ShadowMaps::Statistics(bool deep) const
 	if(!deep)
 		text << "Samples per look-up: " << all.samples / max(1.0, double(sum.lookUps)) << "\n";
 	text << "Tiles:               " << all.tiles_baked << " baked, " << all.tiles_read << " read, " << all.tiles_evicted
-	     << " given up; most bytes " << all.bytes_most << "\n"
+	     << " given up, " << all.tiles_again << " of these baked again; most bytes " << all.bytes_most << "\n"
 	     << "Bake time:           " << all.bake_seconds << " thread seconds (" << all.trace_seconds << " tracing light rays)\n";
 	if(all.tiles_failed > 0)
 		text << "Tiles failed:        " << all.tiles_failed << "\n";

@@ -38,7 +38,7 @@ dsm_result map_digest(const void *bytes, size_t size, char out[DIGEST_CHARS], ma
   deep_error error;
   const deep_exr *exr = deep_exr_load(&error);
   if (!exr)
-    return map_refused(why, "A deep shadow map cannot be saved or loaded: there is no OpenImageIO (%s).", error.text);
+    return map_refused(why, "A shadow map cannot be saved or loaded: there is no OpenImageIO (%s).", error.text);
   return exr->digest(bytes, size, out) ? DSM_OK : map_no_memory(why);
 }
 
@@ -46,7 +46,7 @@ static dsm_result cannot_read(const char *path, int error, map_reason *why)
 {
   char reason[200];
   if (error == ENOENT)
-    return map_refused(why, "There is no deep shadow map \"%s\".", path);
+    return map_refused(why, "There is no shadow map \"%s\".", path);
   if (strerror_r(error, reason, sizeof reason))
     snprintf(reason, sizeof reason, "error %d", error);
   return map_refused(why, "The shadow map \"%s\" cannot be read: %s.", path, reason);
@@ -79,10 +79,10 @@ static dsm_result check_kind(const char *path, uint64_t *size, map_reason *why)
   size_t n = fread(first, 1, sizeof first, file);
   fclose(file);
   if (n < sizeof magic || memcmp(first, magic, sizeof magic) != 0)
-    return map_refused(why, "\"%s\" is not an OpenEXR file, so it is no deep shadow map.", path);
+    return map_refused(why, "\"%s\" is not an OpenEXR file, so it is no shadow map.", path);
   if (!has_our_words(first, n))
-    return map_refused(why, n < sizeof first ? "\"%s\" is not a deep shadow map, or damaged or cut off."
-                                             : "\"%s\" is an OpenEXR image, but not a deep shadow map.", path);
+    return map_refused(why, n < sizeof first ? "\"%s\" is not a shadow map, or damaged or cut off."
+                                             : "\"%s\" is an OpenEXR image, but not a shadow map.", path);
   return DSM_OK;
 }
 
@@ -140,7 +140,7 @@ static dsm_result check_content(map_file *file, uint64_t size, map_header *heade
     result = map_refused(why, "The shadow map \"%s\" is damaged: it does not have the parts that its header tells of.",
                          file->path);
   else if (!table_is_sound(file))
-    result = map_refused(why, "The deep shadow map \"%s\" is damaged or cut off: its table of tiles is not where it should be.",
+    result = map_refused(why, "The shadow map \"%s\" is damaged or cut off: its table of tiles is not where it should be.",
                          file->path);
   else
     result = read_table(file, header, why);
@@ -153,7 +153,7 @@ static dsm_result check_layout(map_file *file, map_reason *why)
 {
   dsm_result result = exr_layout_open(file->path, &file->layout);
   if (result == DSM_REFUSED)
-    return map_refused(why, "The deep shadow map \"%s\" is damaged or cut off: its parts are not where they should be.", file->path);
+    return map_refused(why, "The shadow map \"%s\" is damaged or cut off: its parts are not where they should be.", file->path);
   return result == DSM_OK ? DSM_OK : map_no_memory(why);
 }
 

@@ -396,7 +396,7 @@ dsm_result map_header_read(const char *(*get)(void *data, const char *name), voi
   memset(header, 0, sizeof *header);
   const char *format = get(data, "dsm:format");
   if (!format)
-    return map_refused(why, "\"%s\" is an OpenEXR image, but not a deep shadow map.", path);
+    return map_refused(why, "\"%s\" is an OpenEXR image, but not a shadow map.", path);
   unsigned long number = strtoul(format, NULL, 10);
   if (number > MAP_FORMAT)
     return map_refused(why, "The shadow map \"%s\" has format %lu, and this program knows only formats up to %u: it was "

@@ -17,6 +17,6 @@ dsm_result map_refused(map_reason *why, const char *format, ...)
 
 dsm_result map_no_memory(map_reason *why)
 {
-  map_refused(why, "There is no memory for the file of a deep shadow map.");
+  map_refused(why, "There is no memory for the file of a shadow map.");
   return DSM_NO_MEMORY;
 }

@@ -240,7 +240,7 @@ dsm_result saved_map_end(dsm_worker *worker, void (*progress)(void *worker_data,
   dsm_map *map = worker->map;
   file_saving *s = (file_saving *)map->saving;
   if (!s) {
-    map_refused(&why, "A deep shadow map was to be saved without an announcement.");
+    map_refused(&why, "A shadow map was to be saved without an announcement.");
     return told(map, DSM_INVALID, &why);
   }
   giver g = {worker, progress};

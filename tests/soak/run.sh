@@ -4,6 +4,7 @@
 # that each scene prints. A line of the Test Anything Protocol for each scene, in the order in which they finish.
 #
 #   tests/soak/run.sh [FIRST [COUNT]]     seeds, 1 200; pictures stay in build/soak/
+#   RESUME=1 tests/soak/run.sh ...        goes on: what this program, library and generator have rendered is not rendered again
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 top=$(dirname "$(dirname "$here")")
@@ -11,12 +12,22 @@ top=$(dirname "$(dirname "$here")")
 export POVRAY SHADOW_ERROR here
 export out=$top/build/soak
 first=${1:-1} count=${2:-200}
-rm -rf "$out"
+[ -n "${RESUME:-}" ] || rm -rf "$out"
 mkdir -p "$out"
+
+rendered() {  # $1: picture without its ending
+  local file maker
+  file=$out/$1.exr
+  [ -s "$file" ] && grep -qa 'POV-Ray finished' "$out/$1.log" || return 1
+  for maker in "$POVRAY" "$(dirname "$POVRAY")"/../lib/povray-*/deepshadow.so "$here/random.pov"; do
+    [ "$file" -nt "$maker" ] || return 1
+  done
+}
 
 render() {  # $1: picture without its ending, $2: seed, then options
   local picture=$1 seed=$2
   shift 2
+  ! rendered "$picture" || return 0
   (cd "$out" && timeout 600 "$POVRAY" -D -V +I"$here/random.pov" +O"$picture.exr" +FE +W96 +H72 +A0.0 +AM1 +R2 -J \
     Declare=Seed="$seed" "$@" >"$picture.log" 2>&1 </dev/null) && [ -s "$out/$picture.exr" ]
 }
@@ -41,7 +52,7 @@ one() {  # $1: seed
     echo "not ok - $name: ${words[*]} (rmse, max, share); allowed ${bound:-what the scene did not say}"
   fi
 }
-export -f one render
+export -f one render rendered
 
 echo "1..$count"
 seq "$first" $((first + count - 1)) | xargs -r -n 1 -P "$(nproc)" bash -c 'one "$1"' _

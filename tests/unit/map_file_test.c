@@ -323,15 +323,15 @@ static void each_refusal_has_its_sentence(void **state) {
   made_map m = made_map_random(&r, 6, 20, 0, 5);
   const char *path = made_path("map.exr"), *other = made_path("other.exr");
   write_map(path, &m);
-  assert_refused(made_path("missing.exr"), "There is no deep shadow map");
-  assert_refused(made_path("no/where.exr"), "There is no deep shadow map");
+  assert_refused(made_path("missing.exr"), "There is no shadow map");
+  assert_refused(made_path("no/where.exr"), "There is no shadow map");
   assert_refused(made_folder, "is not the name of a file");
   put_bytes(other, "#version 3.7;\n", 14);
   assert_refused(other, "is not an OpenEXR file");
   put_bytes(other, "", 0);
   assert_refused(other, "is not an OpenEXR file");
   change_text(path, other, "dsm:format", "dsm:fromat");
-  assert_refused(other, "is an OpenEXR image, but not a deep shadow map");
+  assert_refused(other, "is an OpenEXR image, but not a shadow map");
   change_text(path, other, "dsm:faces", "dsm:feces");
   assert_refused(other, "is damaged: its header cannot be read");
   change_text(path, other, "f0.l0", "f0.l9");

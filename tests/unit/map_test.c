@@ -209,6 +209,7 @@ static void a_small_cache_gives_the_same_answers(void **state) {
   }
   assert_memory_equal(light[0], light[1], sizeof light[0]);
   assert_true(got[0].tiles_evicted == 0 && got[1].tiles_evicted > 100);
+  assert_true(got[0].tiles_again == 0 && got[1].tiles_again > 100 && got[1].tiles_again <= got[1].tiles_evicted);
   assert_true(got[1].tiles_baked == got[0].tiles_baked && got[1].vertices == got[0].vertices);
   assert_true(got[1].pixels_baked == got[0].pixels_baked && got[1].rays > 3 * got[0].rays);
   uint64_t room = 0.05 * 1024 * 1024;

@@ -256,7 +256,7 @@ static void files_that_are_no_maps(void **state) {
   FILE *f = fopen(made_path("text.exr"), "w");
   fputs("no map", f);
   fclose(f);
-  assert_not_loaded(made_path("none.exr"), shapes, count, light_of_kind(0), words, "There is no deep shadow map");
+  assert_not_loaded(made_path("none.exr"), shapes, count, light_of_kind(0), words, "There is no shadow map");
   assert_not_loaded(made_path("text.exr"), shapes, count, light_of_kind(0), words, "is not an OpenEXR file");
   made_folder_files(1);
 }
