@@ -54,8 +54,8 @@ static int is_close(const visibility *function, double z, uint32_t channel, doub
   return before - seen > CLOSE * before;
 }
 
-/* What is known of a tile before its pixels are read: those of most tiles are grey, without marks, and of short records. Constants, of
- * which the compiler makes a function each. */
+/* What is known of a tile before its pixels are read: most have neither colour nor marks, and records of a few lengths. Constants,
+ * of which the compiler makes a function each. */
 typedef struct {
   int plain;       /* neither coloured nor marked nor wide */
   int whole;       /* see codes_are_whole */
@@ -138,6 +138,11 @@ static dsm_result add_pixel_of_4(view *v, const tile *t, uint32_t place, size_t 
   return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 1, 4});
 }
 
+static dsm_result add_pixel_of_6(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
+{
+  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 0, 6});
+}
+
 static dsm_result add_pixel(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
 {
   return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){0, codes_are_whole(&t->codes), t->codes.record_bytes});
@@ -170,11 +175,12 @@ static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, ui
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   if (!v->plane_count)
     v->key = visibility_key_of(&t->codes, v->at->depth - t->near_depth);
-  if ((t->layout & ~TILE_REFINED) == 0 && t->codes.record_bytes == 3)
-    return add_rows(v, t, x, y, size, weight, add_pixel_of_3);
-  if ((t->layout & ~TILE_REFINED) == 0 && t->codes.record_bytes == 4)
-    return add_rows(v, t, x, y, size, weight, add_pixel_of_4);
-  return add_rows(v, t, x, y, size, weight, add_pixel);
+  switch ((t->layout & ~TILE_REFINED) == 0 ? t->codes.record_bytes : 0) {
+    case 3: return add_rows(v, t, x, y, size, weight, add_pixel_of_3);   /* the least that a float and a value take is 5 */
+    case 4: return add_rows(v, t, x, y, size, weight, add_pixel_of_4);
+    case 6: return add_rows(v, t, x, y, size, weight, add_pixel_of_6);   /* the most that another code and a value take is 5 */
+    default: return add_rows(v, t, x, y, size, weight, add_pixel);
+  }
 }
 
 static dsm_result add_apart(view *v, uint32_t level, uint32_t x, uint32_t y, double size, double weight)
