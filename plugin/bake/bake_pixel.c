@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/compress.h"
+#include "core/rounding.h"
 #include "core/thin.h"
 #include "core/transmittance.h"
 
@@ -17,6 +18,11 @@ static int is_automatic(const dsm_settings *settings) { return settings->toleran
 double finest_tolerance(const dsm_settings *settings)
 {
   return is_automatic(settings) ? LEAST_TOLERANCE : settings->tolerance;
+}
+
+uint32_t bake_value_bits(const dsm_settings *settings)
+{
+  return settings->tolerance * settings->samples < 1 ? VALUE_BITS : rounding_value_bits(settings->tolerance);
 }
 
 /* Depth that a surface up to about 60 degrees from facing the light takes within a pixel's filter. */
@@ -141,6 +147,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
                                                &s->average);
   if (result != DSM_OK)
     return result;
+  pixel->volume = kind.volume;
   pixel->coloured = kind.coloured && !is_grey(&s->average);
   int channels = pixel->coloured ? 3 : 1;
   const vertices *clean = &s->average;
@@ -160,7 +167,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   }
   double tolerance = finest_tolerance(job->settings);
   pixel->tolerance = is_a_guess(job, samples, events) ? noise_ceiling(1) : fmax(pixel->tolerance, tolerance);
-  double spent = VALUE_ROUNDING + (kind.volume ? spent_on_volume(job->settings) : 0);
+  double spent = rounding_spent(bake_value_bits(job->settings), kind.volume, tolerance) + (kind.volume ? spent_on_volume(job->settings) : 0);
   result = compress_minimal_after(clean->data, clean->count, channels, tolerance, spent, stored);
   pixel->count = stored->count - pixel->first;
   return result;

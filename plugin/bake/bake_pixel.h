@@ -33,6 +33,10 @@ typedef struct {
 /* The smallest tolerance that a pixel of this map can come to have: what tracing has to be good for. */
 double finest_tolerance(const dsm_settings *settings);
 
+/* That stored values are rounded to. All where the step of a single ray is taller than the tolerance, or may be: functions are stairs
+ * of whole rays then, and rounding would make unequal what coarser levels merge. */
+uint32_t bake_value_bits(const dsm_settings *settings);
+
 /* Of pixels that cover 2^level of the finest along a side, from this many rays each. */
 noise_limits limits_of(const bake_job *job, uint32_t face, uint32_t level, uint32_t samples);
 

@@ -174,8 +174,11 @@ dsm_result bake_tile(const bake_job *job, bake_scratch *s, const tile_key *key, 
   uint64_t dropped = s->sink.dropped, clamped = s->sink.clamped;
   *out = NULL;
   dsm_result result = bake_pixels(job, s, key, wanted, tally);
+  double tolerance = finest_tolerance(job->settings);
+  rounding rule = tolerance > 0 ? rounding_for(job->projection, key->face, key->level, bake_value_bits(job->settings), tolerance)
+                                : rounding_least();
   if (result == DSM_OK)
-    result = pack_tile(s->pixels, &s->stored, out);
+    result = pack_tile(s->pixels, &s->stored, &rule, out);
   if (result == DSM_OK)
     for (int i = 0; i < TILE_PIXELS; i++) {
       tally->pixels_marked += s->pixels[i].marked != 0;

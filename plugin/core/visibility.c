@@ -8,7 +8,7 @@ rgb visibility_at(const visibility *function, double z, uint32_t *hint)
     *hint = 0;
     return rgb_grey(1);
   }
-  if (!visibility_find(function, z, hint, &place))
+  if (!visibility_find(function, visibility_key_of(function->codes, z), hint, &place))
     return rgb_grey(1);
   if (function->channels == 1)
     return rgb_grey(visibility_value(function, &place, 0));

@@ -10,6 +10,7 @@ enum { PIXEL_VOLUME = 1, PIXEL_SURFACE = 2 };
 typedef struct {
   size_t first, count;    /* of its vertices */
   int coloured, marked;   /* channels differ; light can grow (then no vertices) */
+  int volume;             /* not surfaces alone */
   double tolerance;       /* error that its compression was allowed */
   double variance;        /* of its rays' average: the noise that lasts, see noise_lasting; 0 unless `accuracy` wants it */
   unsigned char need;     /* of a finer level, see tile.h */

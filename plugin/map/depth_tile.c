@@ -13,7 +13,7 @@ dsm_result depth_tile_unpack(double near_depth, const float depth[TILE_PIXELS], 
     return DSM_NO_MEMORY;
   t->head.near_depth = near_depth;
   t->head.size = sizeof *t;
-  t->head.words = offsetof(depth_tile, depth);
+  t->head.codes.records = offsetof(depth_tile, depth);
   t->head.kind = TILE_STORED;
   t->head.layout = TILE_DEPTHS;
   memcpy(t->depth, depth, sizeof t->depth);

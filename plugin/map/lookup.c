@@ -19,6 +19,7 @@ typedef struct {
   double own_rounding;    /* of the receiver's depth itself */
   double lost_grey;       /* share of light that does not arrive, weighted: in pixels without colour */
   rgb lost;               /* and in those with colour */
+  visibility_key key;     /* the point's own depth, in the tile that is being read */
 } view;
 
 static const footprint AT_ONE_PLACE = {0, 0, 1, 0, 0};
@@ -66,7 +67,7 @@ static int is_close(const visibility *function, double z, uint32_t channel, doub
 {
   visibility_place place;
   uint32_t hint = 0;
-  double before = visibility_find(function, z, &hint, &place) ? visibility_value(function, &place, channel) : 1;
+  double before = visibility_find(function, visibility_key_of(function->codes, z), &hint, &place) ? visibility_value(function, &place, channel) : 1;
   return before - seen > CLOSE * before;
 }
 
@@ -84,13 +85,21 @@ static int hides_more(view *v, const visibility *function, double z, double du, 
   }
   visibility_place at;
   uint32_t hint = 0;
-  if (!visibility_find(function, z, &hint, &at))
+  if (!visibility_find(function, visibility_key_of(function->codes, z), &hint, &at))
     return 0;
   for (uint32_t c = 0; c < function->channels; c++)
     if (seen[c] > 2 * LEAST && visibility_value(function, &at, c) < (fmin(left, 1) - HIDDEN) * seen[c])
       return 1;
   return 0;
 }
+
+/* What is known of a tile before its pixels are read: most have neither colour nor marks, and records of a few lengths. Constants,
+ * of which the compiler makes a function each. */
+typedef struct {
+  int plain;       /* neither coloured nor marked nor wide */
+  int whole;       /* see codes_are_whole */
+  size_t bytes;    /* of a record */
+} reading;
 
 /* Reads a pixel in front of where the receiver's own surface can be. Every plane bounds the surface by itself, so the
  * one that asks for the least bias is enough. du, dv: from the point to the pixel's centre.
@@ -100,15 +109,17 @@ static int hides_more(view *v, const visibility *function, double z, double du, 
  *   1 ----+---.       middle of its range of depths (o). Where less is left there, an occluder is so near that the map
  *         |    `.o    cannot tell the two apart, and says so: unless far occluders have left so few rays that those
  *                     may well be the ones that the surface takes, and nothing else is close in front of it. */
-static dsm_result add_surface(view *v, const tile *t, const visibility *function, double du, double dv,
-                              uint32_t *hint, double weight)
+static inline __attribute__((always_inline)) dsm_result add_surface(view *v, const tile *t, const visibility *function, double du,
+                                                                    double dv, uint32_t *hint, double weight, reading as)
 {
+  const visibility_codes *codes = &t->codes;
   double z = v->at->depth - t->near_depth;
   z -= DEPTH_ROUNDING * fabs(z) + v->own_rounding;
   double tangent = receiver_bias(&v->planes[0], du, dv);
   double other = v->plane_count > 1 ? receiver_bias(&v->planes[1], du, dv) : tangent;
-  visibility_place front = {0, 0, 0}, middle = {0, 0, 0};
-  int dims = visibility_find(function, z - (tangent < other ? tangent : other), hint, &front);
+  visibility_place front = {0, 0, 0, 0, 0}, middle = {0, 0, 0, 0, 0};
+  int dims = visibility_find_as(function, visibility_key_as(codes, z - (tangent < other ? tangent : other), as.whole), hint,
+                                &front, as.bytes, as.whole);
   double seen[3] = {1, 1, 1};
   int in_doubt = 0;
   for (uint32_t c = 0; c < function->channels; c++) {
@@ -118,7 +129,8 @@ static dsm_result add_surface(view *v, const tile *t, const visibility *function
   }
   if (v->grazing && (tangent <= other || other > LARGE * v->pixel) && hides_more(v, function, z, du, dv, seen, weight))
     return DSM_TRACE;
-  in_doubt = in_doubt && visibility_find(function, z - receiver_middle(&v->planes[0], du, dv), hint, &middle);
+  in_doubt = in_doubt && visibility_find_as(function, visibility_key_as(codes, z - receiver_middle(&v->planes[0], du, dv), as.whole),
+                                            hint, &middle, as.bytes, as.whole);
   for (uint32_t c = 0; c < function->channels; c++) {
     double taken = in_doubt ? seen[c] - visibility_value(function, &middle, c) : 0;
     if (taken > CONTACT * seen[c] + LEAST && (taken > OWN || is_close(function, z - 2 * tangent, c, seen[c])))
@@ -128,20 +140,24 @@ static dsm_result add_surface(view *v, const tile *t, const visibility *function
   return DSM_OK;
 }
 
-/* Adds what a pixel takes away. `place` is that of pixel (x, y) in tile t. */
-static inline dsm_result add_pixel(view *v, const tile *t, uint32_t place, uint32_t x, uint32_t y, double size,
-                                   double weight)
+/* Adds what a pixel takes away, whose vertices begin with record `first`. `place` is that of pixel (x, y) in tile t. */
+static inline __attribute__((always_inline)) dsm_result add_pixel_as(view *v, const tile *t, uint32_t place, size_t first, uint32_t x,
+                                                                     uint32_t y, double size, double weight, reading as)
 {
-  if (tile_is_marked(t, place))
+  visibility function;
+  if (as.plain)
+    function = (visibility){&t->codes, codes_word(&t->codes, first), tile_counts(t)[place], 1};
+  else if (tile_is_marked(t, place))
     return DSM_TRACE;
-  visibility function = tile_visibility(t, place);
+  else
+    function = tile_visibility_from(t, place, first);
   if (function.count == 0)
     return DSM_OK;
   uint32_t *hint = &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE];
   if (v->plane_count)
-    return add_surface(v, t, &function, (x + 0.5) * size - v->at->x, (y + 0.5) * size - v->at->y, hint, weight);
+    return add_surface(v, t, &function, (x + 0.5) * size - v->at->x, (y + 0.5) * size - v->at->y, hint, weight, as);
   visibility_place at;
-  if (!visibility_find(&function, v->at->depth - t->near_depth, hint, &at))
+  if (!visibility_find_as(&function, v->key, hint, &at, as.bytes, as.whole))
     return DSM_OK;
   if (function.channels == 1)
     v->lost_grey += weight * (1 - visibility_value(&function, &at, 0));
@@ -151,7 +167,46 @@ static inline dsm_result add_pixel(view *v, const tile *t, uint32_t place, uint3
   return DSM_OK;
 }
 
+typedef dsm_result pixel_adder(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight);
+
+static dsm_result add_pixel_of_3(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
+{
+  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 1, 3});
+}
+
+static dsm_result add_pixel_of_4(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
+{
+  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 1, 4});
+}
+
+static dsm_result add_pixel_of_6(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
+{
+  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 0, 6});
+}
+
+static dsm_result add_pixel(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
+{
+  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){0, codes_are_whole(&t->codes), t->codes.record_bytes});
+}
+
 /* Four pixels of one tile, the first of them (x, y). Both rows are sent for before the first is read. */
+static inline __attribute__((always_inline)) dsm_result add_rows(view *v, const tile *t, uint32_t x, uint32_t y, double size,
+                                                                 const double weight[4], pixel_adder *add)
+{
+  uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
+  size_t low = tile_first(t, place), high = tile_first(t, place + TILE_SIDE);
+  const unsigned char *records = (const unsigned char *)t + t->codes.records;
+  __builtin_prefetch(records + low * t->codes.record_bytes);
+  __builtin_prefetch(records + high * t->codes.record_bytes);
+  dsm_result result = add(v, t, place, low, x, y, size, weight[0]);
+  if (result == DSM_OK)
+    result = add(v, t, place + 1, low + tile_records(t, place), x + 1, y, size, weight[1]);
+  place += TILE_SIDE;
+  if (result == DSM_OK)
+    result = add(v, t, place, high, x, y + 1, size, weight[2]);
+  return result == DSM_OK ? add(v, t, place + 1, high + tile_records(t, place), x + 1, y + 1, size, weight[3]) : result;
+}
+
 static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, uint32_t y, double size,
                                     const double weight[4])
 {
@@ -159,16 +214,14 @@ static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, ui
   dsm_result result = worker_tile(v->worker, key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
-  uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
-  const float *words = (const float *)(const void *)((const char *)t + t->words);
-  __builtin_prefetch(words + tile_first(t, place));
-  __builtin_prefetch(words + tile_first(t, place + TILE_SIDE));
-  result = add_pixel(v, t, place, x, y, size, weight[0]);
-  if (result == DSM_OK)
-    result = add_pixel(v, t, place + 1, x + 1, y, size, weight[1]);
-  if (result == DSM_OK)
-    result = add_pixel(v, t, place + TILE_SIDE, x, y + 1, size, weight[2]);
-  return result == DSM_OK ? add_pixel(v, t, place + TILE_SIDE + 1, x + 1, y + 1, size, weight[3]) : result;
+  if (!v->plane_count)
+    v->key = visibility_key_of(&t->codes, v->at->depth - t->near_depth);
+  switch ((t->layout & ~TILE_REFINED) == 0 ? t->codes.record_bytes : 0) {
+    case 3: return add_rows(v, t, x, y, size, weight, add_pixel_of_3);   /* the least that a float and a value take is 5 */
+    case 4: return add_rows(v, t, x, y, size, weight, add_pixel_of_4);
+    case 6: return add_rows(v, t, x, y, size, weight, add_pixel_of_6);   /* the most that another code and a value take is 5 */
+    default: return add_rows(v, t, x, y, size, weight, add_pixel);
+  }
 }
 
 static dsm_result add_apart(view *v, uint32_t level, uint32_t x, uint32_t y, double size, double weight)
@@ -178,7 +231,10 @@ static dsm_result add_apart(view *v, uint32_t level, uint32_t x, uint32_t y, dou
   dsm_result result = worker_tile(v->worker, &key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
-  return add_pixel(v, t, y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE, x, y, size, weight);
+  uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
+  if (!v->plane_count)
+    v->key = visibility_key_of(&t->codes, v->at->depth - t->near_depth);
+  return add_pixel(v, t, place, tile_first(t, place), x, y, size, weight);
 }
 
 /* Rounds down. */

@@ -3,13 +3,14 @@
 #ifndef DSM_MAP_PACK_TILE_H
 #define DSM_MAP_PACK_TILE_H
 
+#include "core/rounding.h"
 #include "core/vertices.h"
 #include "map/baked_pixel.h"
 #include "map/tile.h"
 
-/* *out: a new tile, or &tile_lit if no pixel stores or is marked. The near depth is that of the nearest vertex. Values are
- * rounded to VALUE_STEPS. Drops vertices that coincide as floats with one before and one behind, and colours that
- * rounding has made grey; lowers the pixels' counts and flags to match. */
-dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const tile **out);
+/* *out: a new compact tile, or &tile_lit if no pixel stores or is marked. The near depth is that of the nearest vertex. Drops
+ * vertices that coincide, once rounded, with one before and one behind, and colours that rounding has made grey; lowers the
+ * pixels' counts and flags to match. */
+dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, const tile **out);
 
 #endif

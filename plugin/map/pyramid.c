@@ -14,6 +14,8 @@ typedef struct {
   vertices parts, average, stored;
   average_scratch heap;
   baked_pixel pixels[TILE_PIXELS];
+  rounding rule;
+  double least_tolerance;         /* that a pixel can have */
 } pyramid_scratch;
 
 /* The finer pixel in quarter `q` of pixel (x, y): its tile and its place there. */
@@ -57,6 +59,7 @@ static dsm_result make_pixel(pyramid_scratch *s, uint32_t x, uint32_t y, baked_p
     if (s->parts.count > first[q]) {
       squares += (double)t->tolerance * t->tolerance;
       coloured |= tile_is_coloured(t, place);
+      out->volume |= t->volume;
       parts++;
     }
   }
@@ -70,10 +73,20 @@ static dsm_result make_pixel(pyramid_scratch *s, uint32_t x, uint32_t y, baked_p
     return result;
   out->coloured = coloured;
   out->tolerance = halved(squares, parts);
-  result = compress_minimal_after(s->average.data, s->average.count, coloured ? 3 : 1, out->tolerance, VALUE_ROUNDING,
-                                  &s->stored);
+  result = compress_minimal_after(s->average.data, s->average.count, coloured ? 3 : 1, out->tolerance,
+                                  rounding_spent(s->rule.value_bits, out->volume, s->least_tolerance), &s->stored);
   out->count = s->stored.count - out->first;
   return result;
+}
+
+static void set_rounding(pyramid_scratch *s, const projection *p, const tile_key *key)
+{
+  double least = INFINITY;
+  for (int q = 0; q < 4; q++)
+    if (s->children[q] && s->children[q]->tolerance > 0)
+      least = fmin(least, (double)s->children[q]->tolerance);
+  double tolerance = s->least_tolerance = least < INFINITY ? halved(least * least, 1) : 0;
+  s->rule = tolerance > 0 ? rounding_for(p, key->face, key->level, rounding_value_bits(tolerance), tolerance) : rounding_least();
 }
 
 static dsm_result make_pixels(pyramid_scratch *s, const tile **out)
@@ -83,7 +96,7 @@ static dsm_result make_pixels(pyramid_scratch *s, const tile **out)
     if (result != DSM_OK)
       return result;
   }
-  return pack_tile(s->pixels, &s->stored, out);
+  return pack_tile(s->pixels, &s->stored, &s->rule, out);
 }
 
 /* Tells whether any of the four stores anything. */
@@ -126,6 +139,7 @@ dsm_result pyramid_make(dsm_worker *worker, const tile_key *key, const tile **ou
     return DSM_NO_MEMORY;
   for (int q = 0; q < 4; q++)
     s->children[q] = children[q];
+  set_rounding(s, &worker->map->projection, key);
   result = make_pixels(s, out);
   vertices_free(&s->parts);
   vertices_free(&s->average);

@@ -10,8 +10,8 @@ dsm_result read_pixel(const tile *t, uint32_t place, vertices *out)
   for (uint32_t i = 0; i < v.count; i++) {
     rgb value;
     for (uint32_t c = 0; c < 3; c++)
-      value.c[c] = v.value[v.channels == 3 ? 3 * (size_t)i + c : i] * (1.0 / VALUE_STEPS);
-    if (vertices_push(out, t->near_depth + (double)v.depth[i], value) != DSM_OK) {
+      value.c[c] = visibility_stored(&v, i, v.channels == 3 ? c : 0) * (1.0 / VALUE_STEPS);
+    if (vertices_push(out, t->near_depth + visibility_depth(&v, i), value) != DSM_OK) {
       out->count = begin;
       return DSM_NO_MEMORY;
     }

@@ -10,10 +10,9 @@ const tile tile_failed = {.size = sizeof(tile), .kind = TILE_FAILED, .used = 1};
 
 enum { BITS = TILE_PIXELS / 8 };
 
-static uint64_t words_of(const tile_plan *plan, int place)
+static uint64_t records_of(const tile_plan *plan, int place)
 {
-  uint64_t n = plan->count[place];
-  return n + (n * (plan->coloured[place] ? 3 : 1) + 1) / 2;
+  return plan->count[place] * (plan->coloured[place] ? 2ull : 1ull);
 }
 
 static void set_bits(tile *t, size_t offset, const unsigned char *flags)
@@ -23,10 +22,29 @@ static void set_bits(tile *t, size_t offset, const unsigned char *flags)
       ((unsigned char *)t)[offset + i / 8] |= (unsigned char)(1 << i % 8);
 }
 
-/* Wide tables and bitmaps are there only where they are needed. */
-static uint8_t layout_of(const tile_plan *plan, uint64_t words)
+/* The narrow table has 16 bits for the records in front of eight pixels, and a byte for those of seven of them. */
+static int is_wide(const tile_plan *plan)
 {
-  uint8_t layout = words > UINT16_MAX ? TILE_WIDE : 0;
+  uint64_t first = 0, group = 0;
+  for (int i = 0; i < TILE_PIXELS; i++) {
+    if (i % 8 == 0) {
+      if (first > UINT16_MAX)
+        return 1;
+      group = 0;
+    }
+    uint64_t records = records_of(plan, i);
+    group += records;
+    first += records;
+    if (records > UINT8_MAX || (i % 8 < 7 && group > UINT8_MAX))
+      return 1;
+  }
+  return 0;
+}
+
+/* Wide tables and bitmaps are there only where they are needed. */
+static uint8_t layout_of(const tile_plan *plan)
+{
+  uint8_t layout = is_wide(plan) ? TILE_WIDE : 0;
   for (int i = 0; i < TILE_PIXELS; i++) {
     if (plan->coloured[i])
       layout |= TILE_COLOURED;
@@ -38,20 +56,41 @@ static uint8_t layout_of(const tile_plan *plan, uint64_t words)
   return layout;
 }
 
+static void fill_table(tile *t, const tile_plan *plan)
+{
+  uint32_t *wide = (uint32_t *)(void *)(t + 1), first = 0;
+  uint16_t *starts = (uint16_t *)(void *)(t + 1);
+  unsigned char *counts = (unsigned char *)(starts + TILE_PIXELS / 8);
+  for (int i = 0; i < TILE_PIXELS; i++) {
+    uint32_t records = (uint32_t)records_of(plan, i);
+    if (t->layout & TILE_WIDE)
+      wide[i] = first;
+    else {
+      if (i % 8 == 0)
+        starts[i / 8] = (uint16_t)first;
+      counts[i] = (unsigned char)records;
+    }
+    first += records;
+  }
+  if (t->layout & TILE_WIDE)
+    wide[TILE_PIXELS] = first;
+}
+
 tile *tile_create(const tile_plan *plan)
 {
-  uint64_t words = 0;
+  uint64_t records = 0;
   for (int i = 0; i < TILE_PIXELS; i++)
-    words += words_of(plan, i);
-  uint8_t layout = layout_of(plan, words);
-  size_t table = layout & TILE_WIDE ? (TILE_PIXELS + 1) * sizeof(uint32_t) : (TILE_PIXELS + 2) * sizeof(uint16_t);
+    records += records_of(plan, i);
+  uint8_t layout = layout_of(plan);
+  size_t table = layout & TILE_WIDE ? (TILE_PIXELS + 1) * sizeof(uint32_t) : TILE_PIXELS / 8 * sizeof(uint16_t) + TILE_PIXELS;
   size_t data = sizeof(tile) + table + (layout & TILE_COLOURED ? BITS : 0) + (layout & TILE_MARKED ? BITS : 0);
-  uint64_t size = data + 4 * words + (layout & TILE_REFINED ? TILE_PIXELS : 0);
+  uint64_t size = data + MOST_RECORD_BYTES * records + (layout & TILE_REFINED ? TILE_PIXELS : 0);
   tile *t = size <= UINT32_MAX ? calloc(1, size) : NULL;
   if (!t)
     return NULL;
+  codes_set(&t->codes, MOST_RECORD_BYTES, VALUE_BITS);
+  t->codes.records = (uint16_t)data;
   t->size = (uint32_t)size;
-  t->words = (uint16_t)data;
   t->kind = TILE_STORED;
   t->layout = layout;
   if (layout & TILE_MARKED)
@@ -60,17 +99,27 @@ tile *tile_create(const tile_plan *plan)
     set_bits(t, data - (layout & TILE_MARKED ? 2 : 1) * BITS, plan->coloured);
   if (layout & TILE_REFINED)
     memcpy((char *)t + size - TILE_PIXELS, plan->need, TILE_PIXELS);
-  uint32_t first = 0;
-  for (int i = 0; i <= TILE_PIXELS; i++) {
-    void *begins = t + 1;
-    if (layout & TILE_WIDE)
-      ((uint32_t *)begins)[i] = first;
-    else
-      ((uint16_t *)begins)[i] = (uint16_t)first;
-    if (i < TILE_PIXELS)
-      first += (uint32_t)words_of(plan, i);
-  }
+  fill_table(t, plan);
   return t;
+}
+
+void tile_put_record(tile *t, size_t index, uint64_t record)
+{
+  uint32_t bytes = t->codes.record_bytes;
+  memcpy((unsigned char *)t + t->codes.records + index * bytes, &record, bytes);
+}
+
+void tile_put(tile *t, uint32_t place, uint32_t vertex, uint32_t channel, float depth, uint16_t value)
+{
+  visibility v = tile_visibility(t, place);
+  union { float value; uint32_t bits; } f = {depth};
+  size_t first = tile_first(t, place), second = first + v.count + vertex;
+  if (channel == 0) {
+    tile_put_record(t, first + vertex, (uint64_t)f.bits << VALUE_BITS | value);
+    return;
+  }
+  uint64_t third = visibility_code(&v, vertex, 2), other = visibility_code(&v, vertex, 1);
+  tile_put_record(t, second, channel == 1 ? third << VALUE_BITS | value : (uint64_t)value << VALUE_BITS | other);
 }
 
 void tile_destroy(const tile *t)

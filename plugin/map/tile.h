@@ -2,16 +2,18 @@
 /*
  * A tile: 16 x 16 pixels of visibility in one block of memory, immutable once published.
  *
- *   +--------+---------------------+----------------+-----------------+-----------------------------------------+
- *   | header | where pixels begin  | which coloured | which marked    | pixel 0: depths, values | pixel 1: … | … |
- *   +--------+---------------------+----------------+-----------------+-----------------------------------------+
- *              257 x 16 or 32 bits   256 bits if any  256 bits if any   words of 32 bits
+ *   +--------+--------------------+----------------+--------------+-----------------------------------+-------------+
+ *   | header | where pixels begin | which coloured | which marked | records of pixel 0 | of pixel 1 | … | need of all |
+ *   +--------+--------------------+----------------+--------------+-----------------------------------+-------------+
+ *              320 or 1028 bytes    256 bits if any  256 bits if any  2 to 6 bytes each                 256 bytes if any
  *
- * A vertex takes 6 bytes, or 10 where it is coloured. Its depth is a float relative to the tile's near depth, a
- * double: the nearest vertex of the tile itself, so that a float's 24 bits cover the tile's range of depths and not
- * the light's distance; fewer would widen the bias of every surface. Its visibility is a whole number of 65535ths:
- * half of that is a 250th of the least automatic tolerance, and compression leaves room for it (VALUE_ROUNDING).
- * A pixel without vertices takes 2 bytes.
+ * Where pixels begin: 32 times 16 bits, of every eighth pixel, and 256 bytes, how many records each has; where that
+ * is not enough, 257 times 32 bits.
+ *
+ * A vertex takes 3 or 4 bytes in most maps, 6 in those without tolerance, and twice as many where it is coloured: see
+ * visibility.h for how, and rounding.h for how many bits its numbers need. Its depth is relative to the tile's near
+ * depth, a double: the nearest vertex of the tile itself, so that the digits cover the tile's range of depths and not the
+ * light's distance. A pixel without vertices takes a byte and a quarter.
  */
 #ifndef DSM_MAP_TILE_H
 #define DSM_MAP_TILE_H
@@ -56,13 +58,14 @@ enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4,   /* what of the optio
        TILE_REFINED = 16 };                                  /* the need of each pixel is at the end of the block */
 
 typedef struct {
+  visibility_codes codes; /* first: counts from here are counts from the tile */
   double near_depth;      /* scene units from the light */
   float tolerance;        /* error of visibility that compression may have added, rms over the pixels that have any */
   uint32_t size;          /* bytes of the whole block */
-  uint16_t words;         /* offset of the vertices in bytes */
   uint8_t kind;           /* tile_kind; only TILE_STORED is followed by pixels */
   uint8_t layout;         /* TILE_WIDE, … */
   atomic_uchar used;      /* since the cache last looked */
+  uint8_t volume;         /* not of surfaces alone; for coarser levels that are made of it, so files do not hold it */
 } tile;
 
 /* What a tile is to hold: pixels in rows, the lowest first. */
@@ -76,16 +79,41 @@ typedef struct {
 /* Shared by all tiles without a caster, and by all that could not be baked. */
 extern const tile tile_lit, tile_failed;
 
-/* A tile laid out as planned, vertices zeroed, to be filled through tile_depths and tile_values before anybody else
- * sees it. NULL: out of memory, or more than 4 GB. */
+/* A tile laid out as planned, of floats and values of 16 bits, all zero, to be filled by tile_put and made compact before
+ * anybody else sees it. NULL: out of memory, or more than 4 GB. */
 tile *tile_create(const tile_plan *plan);
+/* One channel of a vertex, in a tile that is not compact. Grey pixels have channel 0 alone. */
+void tile_put(tile *t, uint32_t place, uint32_t vertex, uint32_t channel, float depth, uint16_t value);
 void tile_destroy(const tile *t);   /* the shared ones may be passed too */
 
-/* The pixel's first word, counted from t->words. `place` is row * TILE_SIDE + column, or TILE_PIXELS: the end. */
+void tile_put_record(tile *t, size_t index, uint64_t record);
+
+/* The first of the 16-bit numbers, and of the bytes, of the narrow table. */
+static inline const uint16_t *tile_starts(const tile *t)
+{
+  return (const uint16_t *)(const void *)(t + 1);
+}
+
+static inline const unsigned char *tile_counts(const tile *t)
+{
+  return (const unsigned char *)(tile_starts(t) + TILE_PIXELS / 8);
+}
+
+/* The pixel's first record. `place` is row * TILE_SIDE + column. */
 static inline uint32_t tile_first(const tile *t, uint32_t place)
 {
-  const void *table = t + 1;
-  return t->layout & TILE_WIDE ? ((const uint32_t *)table)[place] : ((const uint16_t *)table)[place];
+  if (t->layout & TILE_WIDE)
+    return ((const uint32_t *)(const void *)(t + 1))[place];
+  uint64_t counts;   /* of eight pixels; the product's top byte adds up those in front of this one */
+  memcpy(&counts, tile_counts(t) + (place & ~7u), sizeof counts);
+  counts = counts << 8 << (56 - 8 * (place & 7));
+  return tile_starts(t)[place / 8] + (uint32_t)(counts * 0x0101010101010101u >> 56);
+}
+
+static inline uint32_t tile_records(const tile *t, uint32_t place)
+{
+  const uint32_t *wide = (const uint32_t *)(const void *)(t + 1);
+  return t->layout & TILE_WIDE ? wide[place + 1] - wide[place] : tile_counts(t)[place];
 }
 
 static inline int tile_bit(const tile *t, size_t offset, uint32_t place)
@@ -95,13 +123,13 @@ static inline int tile_bit(const tile *t, size_t offset, uint32_t place)
 
 static inline int tile_is_marked(const tile *t, uint32_t place)
 {
-  return t->layout & TILE_MARKED && tile_bit(t, t->words - TILE_PIXELS / 8, place);
+  return t->layout & TILE_MARKED && tile_bit(t, t->codes.records - TILE_PIXELS / 8, place);
 }
 
 static inline int tile_is_coloured(const tile *t, uint32_t place)
 {
   return t->layout & TILE_COLOURED
-      && tile_bit(t, t->words - (t->layout & TILE_MARKED ? 2 : 1) * (TILE_PIXELS / 8), place);
+      && tile_bit(t, t->codes.records - (t->layout & TILE_MARKED ? 2 : 1) * (TILE_PIXELS / 8), place);
 }
 
 /* See NEED_OCTAVE. */
@@ -110,37 +138,24 @@ static inline uint32_t tile_need_at(const tile *t, uint32_t place)
   return t->layout & TILE_REFINED ? ((const unsigned char *)t)[t->size - TILE_PIXELS + place] : 0;
 }
 
-/* The pixel's vertices; none if it is lit or marked. A pixel of n vertices takes n words of depths and n/2 or 3n/2 words
- * of values, rounded up; so its number of words tells n. */
-static inline visibility tile_visibility(const tile *t, uint32_t place)
+/* The pixel's vertices, which begin with a record; none if it is lit or marked. */
+static inline visibility tile_visibility_from(const tile *t, uint32_t place, size_t first)
 {
-  uint32_t first, words;
   visibility v;
-  if ((t->layout & ~TILE_REFINED) == 0) {   /* nearly all tiles */
-    const uint16_t *table = (const uint16_t *)(const void *)(t + 1);
-    first = table[place];
-    words = table[place + 1] - first;
-    v.channels = 1;
+  v.codes = &t->codes;
+  v.word = codes_word(&t->codes, first);
+  v.count = tile_records(t, place);
+  v.channels = 1;
+  if (tile_is_coloured(t, place)) {
+    v.channels = 3;
+    v.count /= 2;
   }
-  else {
-    first = tile_first(t, place);
-    words = tile_first(t, place + 1) - first;
-    v.channels = tile_is_coloured(t, place) ? 3 : 1;
-  }
-  v.count = (uint32_t)(v.channels == 1 ? words * 2ull / 3 : words * 2ull / 5);
-  v.depth = (const float *)(const void *)((const char *)t + t->words) + first;
-  v.value = (const uint16_t *)(const void *)(v.depth + v.count);
   return v;
 }
 
-static inline float *tile_depths(tile *t, uint32_t place)
+static inline visibility tile_visibility(const tile *t, uint32_t place)
 {
-  return (float *)(size_t)tile_visibility(t, place).depth;
-}
-
-static inline uint16_t *tile_values(tile *t, uint32_t place)
-{
-  return (uint16_t *)(size_t)tile_visibility(t, place).value;
+  return tile_visibility_from(t, place, tile_first(t, place));
 }
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "map/compact_tile.h"
 #include "map/depth_tile.h"
 
 const tile_record record_of_lit = {0, -1, 0};
@@ -27,6 +28,27 @@ uint64_t checksum_add(uint64_t sum, const void *bytes, size_t size)
   return sum;
 }
 
+/* Of depths as floats, two in a word, then of values, four in a word: whatever codes the tile has for them. */
+static uint64_t add_pixel(uint64_t sum, const visibility *v)
+{
+  float depths[2];
+  uint16_t values[4];
+  uint32_t numbers = v->count * v->channels;
+  for (uint32_t i = 0; i < v->count; i += 2) {
+    uint32_t n = v->count - i < 2 ? v->count - i : 2;
+    for (uint32_t k = 0; k < n; k++)
+      depths[k] = (float)visibility_depth(v, i + k);
+    sum = checksum_add(sum, depths, n * sizeof *depths);
+  }
+  for (uint32_t i = 0; i < numbers; i += 4) {
+    uint32_t n = numbers - i < 4 ? numbers - i : 4;
+    for (uint32_t k = 0; k < n; k++)
+      values[k] = (uint16_t)visibility_stored(v, (i + k) / v->channels, (i + k) % v->channels);
+    sum = checksum_add(sum, values, n * sizeof *values);
+  }
+  return sum;
+}
+
 tile_record tile_record_of(const tile *t, uint64_t number)
 {
   tile_record record = {t->near_depth, t->tolerance, 0};
@@ -36,8 +58,7 @@ tile_record tile_record_of(const tile *t, uint64_t number)
     visibility v = tile_visibility(t, i);
     uint32_t shape[3] = {v.count, v.channels, (uint32_t)tile_is_marked(t, i)};
     sum = checksum_add(sum, shape, sizeof shape);
-    sum = checksum_add(sum, v.depth, v.count * sizeof *v.depth);
-    sum = checksum_add(sum, v.value, (size_t)v.count * v.channels * sizeof *v.value);
+    sum = add_pixel(sum, &v);
   }
   if (tile_has_depths(t))
     sum = checksum_add(sum, depths_of(t)->depth, sizeof depths_of(t)->depth);
@@ -51,6 +72,12 @@ tile_record tile_record_of(const tile *t, uint64_t number)
 static float value_to_float(uint16_t k)
 {
   return (float)(k + (k >> 15)) / 65536;
+}
+
+/* A grey pixel has one value for all channels. */
+static float stored_value(const visibility *v, uint32_t vertex, uint32_t channel)
+{
+  return value_to_float((uint16_t)visibility_stored(v, vertex, v->channels == 3 ? channel : 0));
 }
 
 /* Of what value_to_float gives. */
@@ -84,7 +111,7 @@ static int reads_as_packed(const visibility *v, uint32_t channels)
   if (v->channels == 1)
     return 1;
   for (uint32_t k = 0; k < v->count; k++)
-    if (v->value[3 * k] != v->value[3 * k + 1] || v->value[3 * k + 1] != v->value[3 * k + 2])
+    if (visibility_stored(v, k, 0) != visibility_stored(v, k, 1) || visibility_stored(v, k, 1) != visibility_stored(v, k, 2))
       return channels == 4;
   return v->count == 0;
 }
@@ -151,9 +178,9 @@ dsm_result tile_to_deep(const tile *t, uint32_t channels, deep_tile *deep)
     int marked = tile_is_marked(t, i);
     visibility v = tile_visibility(t, i);
     for (uint32_t k = 0; k < deep->count[i]; k++) {
-      put_float(&word, marked ? 0 : v.depth[k]);
+      put_float(&word, marked ? 0 : (float)visibility_depth(&v, k));
       for (uint32_t c = 0; c + 1 < channels; c++)
-        put_float(&word, marked ? MARKED_VALUE : value_to_float(v.value[k * v.channels + (v.channels == 3 ? c : 0)]));
+        put_float(&word, marked ? MARKED_VALUE : stored_value(&v, k, c));
     }
   }
   return DSM_OK;
@@ -163,7 +190,7 @@ dsm_result tile_to_deep(const tile *t, uint32_t channels, deep_tile *deep)
 static int may_follow(const uint32_t *word, const uint32_t *before, uint32_t channels)
 {
   float depth = get_float(word);
-  if (!(depth >= (before ? get_float(before) : 0) && depth < INFINITY))
+  if (!(depth >= (before ? get_float(before) : 0) && depth < INFINITY) || signbit(depth))
     return 0;
   for (uint32_t c = 1; c < channels; c++) {
     float value = get_float(word + c);
@@ -207,13 +234,10 @@ static void fill_tile(tile *t, const deep_tile *deep, uint32_t channels)
   const uint32_t *word = deep->words;
   for (uint32_t i = 0; i < TILE_PIXELS; i++) {
     visibility v = tile_visibility(t, i);
-    float *depth = tile_depths(t, i);
-    uint16_t *value = tile_values(t, i);
     for (uint32_t k = 0; k < v.count; k++) {
       const uint32_t *w = word + (size_t)k * channels;
-      depth[k] = get_float(w);
       for (uint32_t c = 0; c < v.channels; c++)
-        *value++ = value_of_float(get_float(w + 1 + c));
+        tile_put(t, i, k, c, get_float(w), value_of_float(get_float(w + 1 + c)));
     }
     word += (size_t)deep->count[i] * channels;
   }
@@ -238,6 +262,6 @@ dsm_result tile_from_deep(const deep_tile *deep, uint32_t channels, const tile_r
     tile_destroy(t);
     return DSM_REFUSED;
   }
-  *out = t;
+  *out = tile_compact(t);
   return DSM_OK;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "core/rounding.h"
 #include "map/depth_tile.h"
 #include "tool/open_map.h"
 
@@ -11,9 +12,9 @@
 static const char *wrong_with(const visibility *v, double reach)
 {
   for (uint32_t i = 0; i < v->count; i++) {
-    if ((double)v->depth[i] > reach)
+    if (visibility_depth(v, i) > reach)
       return "has a depth behind the casters";
-    if (i > 1 && v->depth[i] == v->depth[i - 2])
+    if (i > 1 && visibility_depth(v, i) <= visibility_depth(v, i - 2))
       return "has three vertices at one depth";
   }
   return NULL;
@@ -25,7 +26,7 @@ typedef struct {
 } tally;
 
 /* What is wrong with one pixel of a tile, or NULL. */
-static const char *wrong_in(const tile *t, uint32_t place, const tile_extent *extent, const face *f)
+static const char *wrong_in(const tile *t, uint32_t place, const tile_extent *extent, const face *f, double moved)
 {
   double rounding = 0x1p-20 * (f->far_depth - f->near_depth);   /* depths became floats on their way here */
   int outside = place % TILE_SIDE >= extent->across || place / TILE_SIDE >= extent->up;
@@ -40,16 +41,19 @@ static const char *wrong_in(const tile *t, uint32_t place, const tile_extent *ex
     return "stores something, but lies outside the face";
   if (v.count && !(t->near_depth >= f->near_depth - rounding))
     return "has a depth in front of the casters";
-  return wrong_with(&v, f->far_depth - t->near_depth + rounding);
+  return wrong_with(&v, f->far_depth - t->near_depth + rounding + (t->tolerance > 0 ? moved : 0));
 }
 
 static void check_tile(tally *sum, const map_grid *grid, const tile_key *key, const tile *t)
 {
   tile_extent extent = tile_extent_of(grid, key);
   int wrong = 0;
+  const projection *p = &sum->map->header.projection;
+  const face *f = &p->faces[key->face];
+  double moved = rounding_reach(p, key->face, key->level, f->far_depth);
   sum->pixels += extent.across * extent.up;
   for (uint32_t place = 0; place < TILE_PIXELS; place++) {
-    const char *what = wrong_in(t, place, &extent, &sum->map->header.projection.faces[key->face]);
+    const char *what = wrong_in(t, place, &extent, f, moved);
     if (!what)
       continue;
     trouble("%s: pixel %u, %d of face %u, level %u %s.", sum->map->path, (unsigned)(key->x * TILE_SIDE + place % TILE_SIDE),

@@ -78,11 +78,12 @@ static dsm_result make(tile_maker *base, const tile_key *key, const wanted_pixel
   importer *m = (importer *)base;
   (void)wanted;
   m->stored.count = 0;
+  const rounding rule = rounding_least();
   dsm_result result = gather(m, key);
   for (uint32_t place = 0; place < TILE_PIXELS && result == DSM_OK; place++)
     result = import_pixel(m, place);
   if (result == DSM_OK)
-    result = pack_tile(m->pixels, &m->stored, out);
+    result = pack_tile(m->pixels, &m->stored, &rule, out);
   if (result == DSM_OK)
     built_tile_count(*out, tally);
   if (result == DSM_NO_MEMORY)

@@ -91,7 +91,8 @@ dsm_result merge_tiles(const merge_input *in, merge_scratch *s, const tile **out
     if (result != DSM_OK)
       return result;
   }
-  return pack_tile(s->pixels, &s->stored, out);
+  const rounding rule = rounding_least();
+  return pack_tile(s->pixels, &s->stored, &rule, out);
 }
 
 void merge_scratch_free(merge_scratch *s)

@@ -23,7 +23,8 @@ static const tile *bake(stage *s, uint32_t x, uint32_t y, bake_scratch *scratch,
   return t;
 }
 
-/* Every pixel of a baked tile, at every depth, against the plain sum over rays traced again one by one. */
+/* Every pixel of a baked tile, at every depth, against the plain sum over rays traced again one by one: vertices may have
+ * moved away from the light, so up to as far in front, as it never grows. */
 static void pixels_are_their_rays_average(void **state) {
   (void)state;
   enum { HAIRS = 150, RAYS = 25 };
@@ -47,7 +48,9 @@ static void pixels_are_their_rays_average(void **state) {
     assert_int_equal(t->kind, TILE_STORED);
     for (int probe = 0; probe < 400; ++probe) {
       uint32_t px = rng_below(&r, TILE_SIDE), py = rng_below(&r, TILE_SIDE);
-      double z = rng_between(&r, 1.9, 5), want[3] = {0, 0, 0};
+      double z = rng_between(&r, 1.9, 5), most[3] = {0, 0, 0}, least[3] = {0, 0, 0};
+      rounding rule = rounding_for(&s.map->projection, 0, 0, VALUE_BITS, limits[k % 3]);
+      double moved = k < 6 ? 0 : rule.quantum * (rule.perspective ? z : 1);   /* in fog it is part of the tolerance */
       for (uint32_t i = 0; i < RAYS; ++i) {
         pixel_filter filter = {FILTER_BOX, 1};
         double o[2];
@@ -60,8 +63,11 @@ static void pixels_are_their_rays_average(void **state) {
         assert_int_equal(trace_world(&s.w, &ray, 1, 0, &sink), DSM_OK);
         assert_int_equal(sink_order(&sink), DSM_OK);
         assert_int_equal(transmittance_build(sink.ordered, sink.count, 0, &list), DSM_OK);
-        rgb v = vertices_at(list.data, list.count, z);
-        for (int c = 0; c < 3; ++c) want[c] += v.c[c] / RAYS;
+        rgb front = vertices_at(list.data, list.count, z - moved), here = vertices_at(list.data, list.count, z);
+        for (int c = 0; c < 3; ++c) {
+          most[c] += front.c[c] / RAYS;
+          least[c] += here.c[c] / RAYS;
+        }
         sink_free(&sink);
         vertices_free(&list);
       }
@@ -69,8 +75,9 @@ static void pixels_are_their_rays_average(void **state) {
       uint32_t hint = 0;
       rgb got = visibility_at(&stored, z - t->near_depth, &hint);
       for (int c = 0; c < 3; ++c) {
-        if (fabs(got.c[c] - want[c]) > limits[k % 3] + 1e-5)
-          fail_msg("seed %d: at depth %g of pixel %u, %u: %g, not %g", k, z, px, py, got.c[c], want[c]);
+        double limit = limits[k % 3] + (k % 3 == 1 ? 1e-9 : 1e-5);
+        if (got.c[c] > most[c] + limit || got.c[c] < least[c] - limit)
+          fail_msg("seed %d: at depth %g of pixel %u, %u: %g, not %g to %g", k, z, px, py, got.c[c], least[c], most[c]);
       }
     }
     assert_true(tally.pixels == 256 && tally.rays == 256 * RAYS && tally.vertices > 0);
@@ -249,16 +256,18 @@ static void packing_keeps_steps_and_drops_coincidence(void **state) {
   pixels[3] = (baked_pixel){.first = 0, .count = 3};
   pixels[4] = (baked_pixel){.first = 3, .count = 3, .coloured = 1};
   pixels[5] = (baked_pixel){.marked = 1};
+  const rounding rule = rounding_least();
   const tile *t;
-  assert_int_equal(pack_tile(pixels, &list, &t), DSM_OK);
+  assert_int_equal(pack_tile(pixels, &list, &rule, &t), DSM_OK);
   assert_true(t->near_depth == 1e9);
   assert_true(tile_is_marked(t, 5) && !tile_is_marked(t, 3) && tile_visibility(t, 0).count == 0);
   visibility v = tile_visibility(t, 3);
-  assert_true(v.count == 3 && v.channels == 1 && v.depth[0] == 0 && v.depth[1] > 0 && v.depth[1] == v.depth[2]);
-  assert_true(v.value[0] == VALUE_STEPS && v.value[2] == lround(0.8 * VALUE_STEPS));
+  assert_true(v.count == 3 && v.channels == 1 && visibility_depth(&v, 0) == 0 && visibility_depth(&v, 1) > 0
+              && visibility_depth(&v, 1) == visibility_depth(&v, 2));
+  assert_true(visibility_stored(&v, 0, 0) == VALUE_STEPS && visibility_stored(&v, 2, 0) == lround(0.8 * VALUE_STEPS));
   v = tile_visibility(t, 4);   /* grey, whatever it was called */
-  assert_true(v.count == 2 && v.channels == 1 && v.depth[0] == v.depth[1]);
-  assert_true(v.value[0] == lround(0.7 * VALUE_STEPS) && v.value[1] == lround(0.5 * VALUE_STEPS));
+  assert_true(v.count == 2 && v.channels == 1 && visibility_depth(&v, 0) == visibility_depth(&v, 1));
+  assert_true(visibility_stored(&v, 0, 0) == lround(0.7 * VALUE_STEPS) && visibility_stored(&v, 1, 0) == lround(0.5 * VALUE_STEPS));
   tile_destroy(t);
   vertices_free(&list);
 }

@@ -50,8 +50,7 @@ static void make_content(content *c) {
   c->tiles[0]->near_depth = 5;
   static const float depths[] = {0, 1, 2};
   static const uint16_t values[] = {65535, 30000, 10000};
-  memcpy(tile_depths(c->tiles[0], PLACE), depths, sizeof depths);
-  memcpy(tile_values(c->tiles[0], PLACE), values, sizeof values);
+  for (uint32_t k = 0; k < 3; ++k) tile_put(c->tiles[0], PLACE, k, 0, depths[k], values[k]);
   memset(&plan, 0, sizeof plan);
   plan.count[0] = 1;
   c->tiles[1] = tile_create(&plan);
@@ -121,17 +120,17 @@ static void what_is_wrong_with_a_pixel(void **state) {
   (void)state;
   content c;
   make_content(&c);
-  tile_values(c.tiles[0], PLACE)[2] = 30001;
+  tile_put(c.tiles[0], PLACE, 2, 0, 2, 30001);
   expect(&c, "is damaged at tile 0, 0 of level 0 of face 0");   /* it is not even read */
   make_content(&c);
-  tile_depths(c.tiles[0], PLACE)[2] = 0.5f;
+  tile_put(c.tiles[0], PLACE, 2, 0, 0.5f, 10000);
   expect(&c, "is damaged at tile 0, 0 of level 0 of face 0");
   make_content(&c);
-  tile_depths(c.tiles[0], PLACE)[2] = 3.25f;
+  tile_put(c.tiles[0], PLACE, 2, 0, 3.25f, 10000);
   expect(&c, SPOILT "has a depth behind the casters.");
   make_content(&c);
-  tile_depths(c.tiles[0], PLACE)[1] = 0;
-  tile_depths(c.tiles[0], PLACE)[2] = 0;
+  tile_put(c.tiles[0], PLACE, 1, 0, 0, 30000);
+  tile_put(c.tiles[0], PLACE, 2, 0, 0, 10000);
   expect(&c, SPOILT "has three vertices at one depth.");
   make_content(&c);
   c.tiles[0]->near_depth = 3;

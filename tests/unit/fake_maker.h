@@ -40,8 +40,7 @@ static inline tile *made_up_tile(const tile_key *key) {
     uint32_t channels = plan.coloured[i] ? 3 : 1;
     double z = 0, value = 1;
     for (uint32_t k = 0; k < plan.count[i]; ++k) {
-      tile_depths(t, i)[k] = (float)z;
-      for (uint32_t c = 0; c < channels; ++c) tile_values(t, i)[k * channels + c] = (uint16_t)(VALUE_STEPS * value / (1 + c));
+      for (uint32_t c = 0; c < channels; ++c) tile_put(t, i, k, c, (float)z, (uint16_t)(VALUE_STEPS * value / (1 + c)));
       if (k % 2 == 0) value *= rng_unit(&r);
       else z += 0.1 * rng_unit(&r);
     }

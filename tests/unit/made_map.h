@@ -10,6 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "map/compact_tile.h"
 #include "map/depth_tile.h"
 #include "map/tile.h"
 #include "random.h"
@@ -147,17 +148,15 @@ static inline map_header random_header(rng *r, uint32_t faces, uint32_t most_pix
 static inline void fill_random(rng *r, tile *t) {
   for (uint32_t i = 0; i < TILE_PIXELS; ++i) {
     visibility v = tile_visibility(t, i);
-    float *depth = tile_depths(t, i), z = rng_below(r, 2) ? 0 : (float)rng_scale(r, 1e-30, 1e3);
-    uint16_t *value = tile_values(t, i), now[3];
+    float z = rng_below(r, 2) ? 0 : (float)rng_scale(r, 1e-30, 1e3);
+    uint16_t now[3];
     for (int c = 0; c < 3; ++c) now[c] = rng_below(r, 2) ? VALUE_STEPS : (uint16_t)rng_below(r, VALUE_STEPS + 1);
     for (uint32_t k = 0; k < v.count; ++k) {
-      depth[k] = z;
+      if (v.channels == 3 && k == 0 && now[0] == now[1]) now[1] = (uint16_t)(now[0] > 0 ? now[0] - 1 : 1);
+      for (uint32_t c = 0; c < v.channels; ++c) tile_put(t, i, k, c, z, now[c]);
       if (rng_below(r, 3)) z += (float)rng_scale(r, 1e-6, 1e3);
-      for (uint32_t c = 0; c < v.channels; ++c) {
-        value[k * v.channels + c] = now[c];
+      for (uint32_t c = 0; c < v.channels; ++c)
         if (rng_below(r, 3)) now[c] = (uint16_t)rng_below(r, now[c] + 1u);
-      }
-      if (v.channels == 3 && k == 0 && value[0] == value[1]) now[1] = value[1] = (uint16_t)(value[0] > 0 ? value[0] - 1 : 1);
     }
   }
 }
@@ -187,7 +186,7 @@ static inline const tile *random_tile(rng *r, int coloured, uint32_t most_vertic
   t->near_depth = rng_scale(r, 1e-9, 1e9);
   t->tolerance = (float)rng_unit(r);
   fill_random(r, t);
-  return t;
+  return tile_compact(t);
 }
 
 static inline made_map made_map_random(rng *r, uint32_t faces, uint32_t most_pixels, int coloured, uint32_t most_vertices) {
@@ -215,7 +214,7 @@ static inline dsm_result give_made(void *data, const tile_key *key, const tile *
 static inline int same_tiles(const tile *a, const tile *b) {
   if (a->kind != TILE_STORED || b->kind != TILE_STORED) return a == b;
   return a->near_depth == b->near_depth && a->tolerance == b->tolerance
-      && a->size == b->size && a->words == b->words && a->layout == b->layout
+      && a->size == b->size && a->layout == b->layout && memcmp(&a->codes, &b->codes, sizeof a->codes) == 0
       && memcmp(a + 1, b + 1, a->size - sizeof(tile)) == 0;
 }
 

@@ -140,10 +140,10 @@ static void all_values_survive(void **state) {
     for (uint32_t i = 0; i < TILE_PIXELS; ++i)
       for (uint32_t k = 0; k < 256; ++k) {
         uint16_t value = (uint16_t)(VALUE_STEPS - (i * 256 + k));
-        tile_depths(t, i)[k] = (float)k;
-        for (int c = 0; c < (coloured ? 3 : 1); ++c)
-          tile_values(t, i)[(coloured ? 3 : 1) * k + (uint32_t)c] = (uint16_t)(c == 1 ? value / 2 : value);
+        for (uint32_t c = 0; c < (coloured ? 3 : 1); ++c)
+          tile_put(t, i, k, c, (float)k, (uint16_t)(c == 1 ? value / 2 : value));
       }
+    t = tile_compact(t);
     tile_destroy(m.tiles[0]);
     m.tiles[0] = t;
     const char *path = made_path("values.exr");
@@ -168,9 +168,9 @@ static void every_bit_counts(void **state) {
   tile *t = tile_create(&plan);
   uint32_t sum = tile_record_of(t, 5).checksum;
   for (int i = 0; i < 4 * 16; ++i) {
-    tile_values(t, TILE_PIXELS - 1)[i / 16] ^= (uint16_t)(1u << i % 16);
+    tile_put(t, TILE_PIXELS - 1, (uint32_t)i / 16, 0, 0, (uint16_t)(1u << i % 16));
     assert_true(tile_record_of(t, 5).checksum != sum);
-    tile_values(t, TILE_PIXELS - 1)[i / 16] ^= (uint16_t)(1u << i % 16);
+    tile_put(t, TILE_PIXELS - 1, (uint32_t)i / 16, 0, 0, 0);
   }
   tile_destroy(t);
 }
@@ -184,18 +184,17 @@ static void impossible_tiles_are_refused(void **state) {
   plan.coloured[9] = 1;
   plan.marked[11] = 1;
   float depths[] = {-1, -1e-30f, NAN, INFINITY, 5};
-  for (int spoil = 0; spoil < 9; ++spoil) {
+  for (int spoil = 0; spoil < 10; ++spoil) {
     tile *t = tile_create(&plan);
     assert_non_null(t);
-    for (int k = 0; k < 3; ++k) {
-      tile_depths(t, 7)[k] = (float)k;
-      tile_values(t, 7)[k] = (uint16_t)(60000 - 10000 * k);
-    }
-    for (int k = 0; k < 6; ++k) tile_values(t, 9)[k] = (uint16_t)(600 - 100 * k);
-    if (spoil >= 1 && spoil <= 5) tile_depths(t, 7)[spoil == 5 ? 1 : 0] = depths[spoil - 1];   /* 5 falls afterwards */
-    if (spoil == 6) tile_depths(t, 9)[1] = -0.5f;
-    if (spoil == 7) tile_values(t, 7)[2] = 50001;
-    if (spoil == 8) tile_values(t, 9)[5] = 401;
+    for (uint32_t k = 0; k < 3; ++k) tile_put(t, 7, k, 0, (float)k, (uint16_t)(60000 - 10000 * k));
+    for (uint32_t k = 0; k < 6; ++k) tile_put(t, 9, k / 3, k % 3, 0, (uint16_t)(600 - 100 * k));
+    if (spoil >= 1 && spoil <= 4) tile_put(t, 7, 0, 0, depths[spoil - 1], 60000);
+    if (spoil == 5) tile_put(t, 7, 1, 0, depths[4], 50000);   /* falls afterwards */
+    for (uint32_t c = 0; c < 3 && spoil == 6; ++c) tile_put(t, 9, 1, c, -0.5f, (uint16_t)(300 - 100 * c));
+    if (spoil == 7) tile_put(t, 7, 2, 0, 2, 50001);
+    if (spoil == 8) tile_put(t, 9, 1, 2, 0, 401);
+    if (spoil == 9) tile_put(t, 7, 0, 0, -0.0f, 60000);   /* the same number, but another word */
     tile_record record = tile_record_of(t, 3);
     deep_tile deep = {.words = NULL};
     const tile *back;
@@ -203,6 +202,7 @@ static void impossible_tiles_are_refused(void **state) {
     dsm_result result = tile_from_deep(&deep, 4, &record, 3, &back);
     if (result != (spoil ? DSM_REFUSED : DSM_OK)) fail_msg("spoilt in way %d: %d", spoil, (int)result);
     if (spoil == 0) {
+      t = tile_compact(t);
       assert_true(same_tiles(t, back));
       tile_destroy(back);
       assert_int_equal(tile_from_deep(&deep, 4, &record, 4, &back), DSM_REFUSED);   /* of another place */

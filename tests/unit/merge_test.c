@@ -49,7 +49,8 @@ static const tile *random_tile(rng *r, double tolerance, int marks) {
     else random_pixel(r, &stored, &pixels[i]);
   }
   const tile *t;
-  assert_int_equal(pack_tile(pixels, &stored, &t), DSM_OK);
+  const rounding rule = rounding_least();
+  assert_int_equal(pack_tile(pixels, &stored, &rule, &t), DSM_OK);
   vertices_free(&stored);
   return t;
 }

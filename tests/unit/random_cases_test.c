@@ -273,7 +273,8 @@ static dsm_result make_random(tile_maker *base, const tile_key *key, const wante
   random_tile_maker *m = (random_tile_maker *)(void *)base;
   if (key->level || key->x || key->y) abort();
   tally->pixels = TILE_PIXELS;
-  return pack_tile(m->pixels, &m->all, out);
+  const rounding rule = rounding_least();
+  return pack_tile(m->pixels, &m->all, &rule, out);
 }
 
 static void destroy_nothing(tile_maker *base) { (void)base; }

@@ -46,7 +46,7 @@ static tile *any_tile(rng *r) {
   assert_non_null(t);
   t->near_depth = rng_unit(r);
   t->tolerance = (float)rng_unit(r);
-  for (size_t i = t->words; i < t->size; ++i) ((unsigned char *)t)[i] = (unsigned char)rng_bits(r);
+  for (size_t i = t->codes.records; i < t->size; ++i) ((unsigned char *)t)[i] = (unsigned char)rng_bits(r);
   return t;
 }
 

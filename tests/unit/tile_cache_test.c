@@ -200,10 +200,8 @@ static tile *telling_tile(uint32_t number) {
   if (!t) return NULL;
   t->near_depth = number;
   for (uint32_t i = 0; i < 4; ++i)
-    for (uint32_t k = 0; k < vertices_of(number); ++k) {
-      tile_depths(t, i * 85)[k] = (float)(number + k);
-      tile_values(t, i * 85)[k] = (uint16_t)(number * 3 + i + k);
-    }
+    for (uint32_t k = 0; k < vertices_of(number); ++k)
+      tile_put(t, i * 85, k, 0, (float)(number + k), (uint16_t)(number * 3 + i + k));
   return t;
 }
 
@@ -213,7 +211,7 @@ static int tells(const tile *t, uint32_t number) {
     visibility v = tile_visibility(t, i * 85);
     if (v.count != vertices_of(number)) return 0;
     for (uint32_t k = 0; k < v.count; k += 7)
-      if (v.depth[k] != (float)(number + k) || v.value[k] != (uint16_t)(number * 3 + i + k)) return 0;
+      if (visibility_depth(&v, k) != (float)(number + k) || visibility_stored(&v, k, 0) != (uint16_t)(number * 3 + i + k)) return 0;
   }
   return 1;
 }

@@ -8,22 +8,38 @@
 #include "map/tile.h"
 #include "random.h"
 
-typedef struct { tile_plan plan; uint64_t words; int coloured, marked; } planned;
+typedef struct { tile_plan plan; uint64_t records; int coloured, marked; } planned;
 
-/* Words as the layout promises them: a depth each, and two values in one. */
+/* A record for each vertex, two for a coloured one, of 6 bytes as long as the tile is not compact. */
 static void plan_pixel(planned *p, int place, uint32_t count, int coloured, int marked) {
   p->plan.count[place] = count;
   p->plan.coloured[place] = coloured != 0;
   p->plan.marked[place] = marked != 0;
-  uint64_t values = (uint64_t)count * (coloured ? 3 : 1);
-  p->words += count + values / 2 + values % 2;
+  p->records += (uint64_t)count * (coloured ? 2 : 1);
   p->coloured |= coloured;
   p->marked |= marked;
 }
 
+/* Whether 16 bits do not count the records in front of eight pixels, or a byte those of one, or of seven. */
+static int is_wide(const planned *p) {
+  uint64_t before = 0;
+  for (int group = 0; group < 32; ++group) {
+    uint64_t in_group = 0, most = 0;
+    for (int i = 8 * group; i < 8 * group + 8; ++i) {
+      uint64_t n = (uint64_t)p->plan.count[i] * (p->plan.coloured[i] ? 2 : 1);
+      in_group += n;
+      most = n > most ? n : most;
+      if (i % 8 == 6 && in_group > 255) return 1;
+    }
+    if (most > 255 || before > 65535) return 1;
+    before += in_group;
+  }
+  return 0;
+}
+
 static size_t size_of(const planned *p) {
-  size_t table = p->words > 65535 ? 257 * 4 : 258 * 2;
-  return sizeof(tile) + table + (p->coloured ? 32 : 0) + (p->marked ? 32 : 0) + 4 * p->words;
+  size_t table = is_wide(p) ? 257 * 4 : 32 * 2 + 256;
+  return sizeof(tile) + table + (p->coloured ? 32 : 0) + (p->marked ? 32 : 0) + 6 * p->records;
 }
 
 static float depth_of(int place, uint32_t k) { return (float)k + 0.001f * (float)place; }
@@ -33,8 +49,7 @@ static void fill(tile *t, const planned *p) {
   for (uint32_t i = 0; i < TILE_PIXELS; ++i) {
     uint32_t channels = p->plan.coloured[i] ? 3 : 1;
     for (uint32_t k = 0; k < p->plan.count[i]; ++k) {
-      tile_depths(t, i)[k] = depth_of((int)i, k);
-      for (uint32_t c = 0; c < channels; ++c) tile_values(t, i)[k * channels + c] = value_of((int)i, k, c);
+      for (uint32_t c = 0; c < channels; ++c) tile_put(t, i, k, c, depth_of((int)i, k), value_of((int)i, k, c));
     }
   }
 }
@@ -46,12 +61,10 @@ static int holds(const tile *t, const planned *p) {
     uint32_t channels = p->plan.coloured[i] ? 3 : 1;
     if (v.count != p->plan.count[i] || v.channels != channels) return 0;
     if (!tile_is_coloured(t, i) != !p->plan.coloured[i] || !tile_is_marked(t, i) != !p->plan.marked[i]) return 0;
-    if ((uintptr_t)v.depth % sizeof(float) || (const char *)(v.value + v.count * channels) > (const char *)t + t->size)
-      return 0;
     for (uint32_t k = 0; k < v.count; ++k) {
-      if (v.depth[k] != depth_of((int)i, k)) return 0;
+      if (visibility_depth(&v, k) != depth_of((int)i, k)) return 0;
       for (uint32_t c = 0; c < channels; ++c)
-        if (v.value[k * channels + c] != value_of((int)i, k, c)) return 0;
+        if (visibility_stored(&v, k, c) != value_of((int)i, k, c)) return 0;
     }
   }
   return 1;
@@ -62,9 +75,9 @@ static void check_round_trip(const planned *p) {
   assert_non_null(t);
   assert_true(t->kind == TILE_STORED && t->near_depth == 0 && t->tolerance == 0);
   assert_int_equal(t->size, size_of(p));
-  assert_int_equal(t->layout, (p->words > 65535 ? TILE_WIDE : 0) | (p->coloured ? TILE_COLOURED : 0)
+  assert_int_equal(t->layout, (is_wide(p) ? TILE_WIDE : 0) | (p->coloured ? TILE_COLOURED : 0)
                                   | (p->marked ? TILE_MARKED : 0));
-  for (const char *zero = (const char *)t + t->words; zero < (const char *)t + t->size; ++zero) assert_true(!*zero);
+  for (const char *zero = (const char *)t + t->codes.records; zero < (const char *)t + t->size; ++zero) assert_true(!*zero);
   fill(t, p);
   assert_true(holds(t, p));
   tile_destroy(t);
@@ -94,26 +107,22 @@ static void any_count_comes_back(void **state) {
     }
 }
 
-/* 43690 grey vertices take 65535 words: the most that 16 bits count. */
-static void wide_from_where_16_bits_end(void **state) {
+/* 255 records in a pixel, or in front of the last of eight, are the most that a byte counts. */
+static void wide_from_where_a_byte_ends(void **state) {
   (void)state;
-  for (uint32_t more = 0; more < 3; ++more)
-    for (int place = 0; place < TILE_PIXELS; place += 255) {
-      planned p = {0};
-      plan_pixel(&p, place, 43690 + more, 0, 0);
-      assert_int_equal(p.words, 65535 + (more == 1 ? 2 : more == 2 ? 3 : 0));
-      check_round_trip(&p);
-      if (more == 0) {   /* 65534 and 2 */
-        planned one_over = {0};
-        plan_pixel(&one_over, place, 43689, 0, 0);
-        plan_pixel(&one_over, 50, 1, 0, 0);
-        assert_int_equal(one_over.words, 65536);
-        check_round_trip(&one_over);
-      }
-      plan_pixel(&p, 100, 1001, 1, 0);
-      plan_pixel(&p, 101, 0, 0, 1);
-      plan_pixel(&p, 254, 3, 0, 0);
-      check_round_trip(&p);
+  for (uint32_t more = 0; more < 2; ++more)
+    for (int place = 0; place < TILE_PIXELS; place += 51) {
+      planned one = {0}, group = {0}, coloured = {0};
+      plan_pixel(&one, place, 255 + more, 0, 0);
+      check_round_trip(&one);
+      assert_true(is_wide(&one) == (int)more);
+      for (int i = 0; i < 7; ++i) plan_pixel(&group, place / 8 * 8 + i, i ? 36 : 39 + more, 0, 0);
+      plan_pixel(&group, place / 8 * 8 + 7, 255, 0, 0);
+      check_round_trip(&group);
+      assert_true(is_wide(&group) == (int)more);
+      plan_pixel(&coloured, place, 127 + more, 1, 0);
+      check_round_trip(&coloured);
+      assert_true(is_wide(&coloured) == (int)more);
     }
 }
 
@@ -133,7 +142,7 @@ static void any_mixture(void **state) {
     assert_seeded(&r, t->size == size_of(&p));
     fill(t, &p);
     assert_seeded(&r, holds(t, &p));
-    assert_seeded(&r, !(t->layout & TILE_WIDE) == (p.words <= 65535));
+    assert_seeded(&r, !(t->layout & TILE_WIDE) == !is_wide(&p));
     tile_destroy(t);
   }
 }
@@ -167,7 +176,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(optional_parts_are_there_when_needed),
     cmocka_unit_test(any_count_comes_back),
-    cmocka_unit_test(wide_from_where_16_bits_end),
+    cmocka_unit_test(wide_from_where_a_byte_ends),
     cmocka_unit_test(any_mixture),
     cmocka_unit_test(a_size_out_of_range),
     cmocka_unit_test(shared_ones_may_be_destroyed),

@@ -11,17 +11,36 @@
 
 enum { MOST = 70 };
 
+/* Records as in a tile, of floats and values of 16 bits. */
+typedef struct {
+  visibility_codes codes;
+  unsigned char bytes[3 * MOST * 6];
+} block;
+
+static visibility plain(block *b, const float *depth, const uint16_t *value, uint32_t count, uint32_t channels) {
+  memset(b, 0, sizeof *b);
+  codes_set(&b->codes, MOST_RECORD_BYTES, VALUE_BITS);
+  b->codes.records = offsetof(block, bytes);
+  for (uint32_t i = 0; i < count; ++i) {
+    unsigned char *record = b->bytes + 6 * (size_t)i, *second = record + 6 * (size_t)count;
+    memcpy(record, &value[i * channels], sizeof *value);
+    memcpy(record + sizeof *value, &depth[i], sizeof *depth);
+    if (channels == 3) memcpy(second, &value[i * channels + 1], 2 * sizeof *value);
+  }
+  return (visibility){&b->codes, codes_word(&b->codes, 0), count, channels};
+}
+
 /* A function twice: as stored, and as vertices with the same numbers. */
 typedef struct {
   float depth[MOST];
   uint16_t value[3 * MOST];
   vertex same[MOST];
   visibility function;
+  block store;
 } both;
 
 static void make(both *b, rng *r, uint32_t count, uint32_t channels) {
   float z = (float)rng_between(r, 0, 2), scale = (float)rng_scale(r, 1e-6, 1e6);
-  b->function = (visibility){b->depth, b->value, count, channels};
   for (uint32_t i = 0; i < count; ++i) {
     b->depth[i] = z * scale;
     b->same[i].z = (double)b->depth[i];
@@ -32,6 +51,7 @@ static void make(both *b, rng *r, uint32_t count, uint32_t channels) {
     }
     z += (float)rng_below(r, 3);   /* steps, and more than two vertices at a depth */
   }
+  b->function = plain(&b->store, b->depth, b->value, count, channels);
 }
 
 static int close_to(rgb a, rgb b) { return rgb_max(rgb_sub(a, b)) < 1e-13 && rgb_max(rgb_sub(b, a)) < 1e-13; }
@@ -87,7 +107,8 @@ static void every_pair_of_place_and_hint(void **state) {
   uint16_t value[MOST];
   for (uint32_t count = 0; count <= MOST; ++count) {
     for (uint32_t i = 0; i < count; ++i) depth[i] = (float)i, value[i] = (uint16_t)(VALUE_STEPS / (1 + i));
-    visibility f = {depth, value, count, 1};
+    block store;
+  visibility f = plain(&store, depth, value, count, 1);
     for (uint32_t place = 0; place <= count; ++place)
       for (uint32_t start = 0; start <= count + 1; ++start) {
         uint32_t hint = start;
@@ -103,7 +124,8 @@ static void every_pair_of_place_and_hint(void **state) {
 static void nothing_is_all_lit(void **state) {
   (void)state;
   uint32_t hint = 99;
-  visibility none = {NULL, NULL, 0, 3};
+  block store;
+  visibility none = plain(&store, NULL, NULL, 0, 3);
   rgb v = visibility_at(&none, 5, &hint);
   assert_true(v.c[0] == 1 && v.c[1] == 1 && v.c[2] == 1 && hint == 0);
 }
@@ -112,7 +134,8 @@ static void surface_does_not_shadow_itself(void **state) {
   (void)state;
   const float depth[] = {3, 3};
   const uint16_t value[] = {VALUE_STEPS, 0};
-  visibility opaque = {depth, value, 2, 1};
+  block store;
+  visibility opaque = plain(&store, depth, value, 2, 1);
   uint32_t hint = 0;
   assert_true(visibility_at(&opaque, 3, &hint).c[0] == 1);
   assert_true(visibility_at(&opaque, nextafter(3, 4), &hint).c[0] == 0);
@@ -134,7 +157,8 @@ static void all_and_nothing_are_exact(void **state) {
   (void)state;
   const float depth[] = {1, 2, 3, 4};
   const uint16_t value[] = {65535, 65535, 0, 65535, 0, 65535, 65535, 0, 65535, 0, 0, 0};
-  visibility f = {depth, value, 4, 3};
+  block store;
+  visibility f = plain(&store, depth, value, 4, 3);
   for (int i = 0; i <= 40; ++i) {
     uint32_t hint = 0;
     double z = 1 + i * 0.1;
