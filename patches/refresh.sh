@@ -50,7 +50,7 @@ for name in "${series[@]}"; do
   done
   sed '/^--- /,$d' "$here/$name" >"$work/new/$name"
   for file in $files; do
-    diff -U1 -p --label "a/$file" --label "b/$file" "$work/before/$file" "$work/now/$file" >>"$work/new/$name" || true
+    diff -U1 --label "a/$file" --label "b/$file" "$work/before/$file" "$work/now/$file" >>"$work/new/$name" || true
   done
 done
 for file in $files; do

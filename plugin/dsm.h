@@ -223,7 +223,7 @@ typedef struct {
   /* Whole maps and their files. The file names among the settings are for the host, which knows where files may lie;
    * here it hands over a path. All trace a few light rays through the worker, to know the scene again: the file of
    * another light, of other settings, or of a scene that has changed is refused with a sentence that says what
-   * differs. */
+   * differs. So is any file for a map with `accuracy`, which is only as fine as what one picture looks at. */
 
   /* From now on tiles are read from the file when first needed, and never baked. Before the map's first look-up. */
   dsm_result (*load)(dsm_worker *worker, const char *path);                   /* [one] for the map */

@@ -105,6 +105,14 @@ static dsm_result told(const dsm_map *map, dsm_result result, const map_reason *
   return result;
 }
 
+/* What `accuracy` leaves out follows from what one picture looks at; a file has no place for it. */
+static dsm_result fits_a_file(const dsm_map *map, map_reason *why)
+{
+  if (map->settings.accuracy > 0)
+    return map_refused(why, "A shadow map with accuracy can be neither saved nor loaded: it is only as fine as what one picture looks at.");
+  return DSM_OK;
+}
+
 /* ---- Loading ---------------------------------------------------------------------------------------------------- */
 
 static dsm_result compare(dsm_worker *worker, const map_header *header, const char *path, map_reason *why)
@@ -123,7 +131,9 @@ dsm_result saved_map_load(dsm_worker *worker, const char *path)
   map_reason why = {text, sizeof text};
   map_header header;
   map_file *file;
-  dsm_result result = map_file_open(path, &header, &file, &why);
+  dsm_result result = fits_a_file(worker->map, &why);
+  if (result == DSM_OK)
+    result = map_file_open(path, &header, &file, &why);
   if (result != DSM_OK)
     return told(worker->map, result, &why);
   result = compare(worker, &header, path, &why);
@@ -178,7 +188,9 @@ dsm_result saved_map_begin(dsm_worker *worker, const char *path)
   char text[MAP_REASON_SIZE] = "";
   map_reason why = {text, sizeof text};
   dsm_map *map = worker->map;
-  dsm_result result = map_file_writable(path, &why);
+  dsm_result result = fits_a_file(map, &why);
+  if (result == DSM_OK)
+    result = map_file_writable(path, &why);
   if (result != DSM_OK)
     return told(map, result, &why);
   file_saving *s = calloc(1, sizeof *s);

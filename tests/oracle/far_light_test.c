@@ -29,7 +29,10 @@ static void same_as_parallel(double distance, dsm_light light, double depth_slac
   /* the ball's own lit side, and the sheets' */
   for (double a = 0; a <= 89; a += 0.5) {
     double t = a * acos(-1) / 180, n[3] = {sin(t) * 0.6, sin(t) * 0.8, cos(t)};
-    double lit = light_of(&far, on_plane(0.2 + 0.4 * n[0], 0.1 + 0.4 * n[1], 0.4 * n[2], n[0], n[1], n[2]), 0);
+    dsm_receiver ball = on_plane(0.2 + 0.4 * n[0], 0.1 + 0.4 * n[1], 0.4 * n[2], n[0], n[1], n[2]);
+    double rgb[3];
+    if (a > 87.5 && dsm_api.lookup(far.worker, &ball, rgb) == DSM_TRACE) continue;   /* under light that grazes a map may decline */
+    double lit = light_of(&far, ball, 0);
     /* near the rim the plane's bias reads in front of the glass above, which then takes less */
     if (a <= 60) assert_true(fabs(lit - 0.5) < 0.0021);
     else assert_true(lit > 0.43);

@@ -80,7 +80,7 @@ static void every_bound_of_a_box_is_looked_at(void **state) {
   light = parallel_at(0, 0, 0, 0, 0, 1);
   light.direction[1] = NAN;
   assert_int_equal(create(&w, light, &map), DSM_INVALID);
-  assert_string_equal(w.last, "The deep shadow map's light has no direction.");
+  assert_string_equal(w.last, "The shadow map's light has no direction.");
 }
 
 /* What is wrong is refused all the same by a host without ears, and by one without hands. */

@@ -249,6 +249,25 @@ static void any_of_its_scenes_will_do(void **state) {
   map_header_free(&file);
 }
 
+static void accuracy_has_no_file(void **state) {
+  (void)state;
+  shape shapes[MOST_SHAPES];
+  int count = make_scene(0, shapes);
+  const char *path = made_path("map.exr");
+  stage s;
+  stage_open(&s, shapes, count, light_of_kind(0), words);
+  save(&s, path);
+  stage_close(&s);
+  stage_open(&s, shapes, count, light_of_kind(0), (const char *const[]){"accuracy 0.02", NULL});
+  assert_int_equal(dsm_api.load(s.worker, path), DSM_REFUSED);
+  assert_non_null(strstr(s.w.last, "with accuracy can be neither saved nor loaded"));
+  assert_int_equal(dsm_api.save_begin(s.worker, made_path("other.exr")), DSM_REFUSED);
+  assert_int_equal(s.w.sentences, 2);
+  light_of(&s, in_air(0, 0, 8), 0);   /* it still bakes */
+  stage_close(&s);
+  assert_int_equal(made_folder_files(1), 1);
+}
+
 static void files_that_are_no_maps(void **state) {
   (void)state;
   shape shapes[MOST_SHAPES];
@@ -404,6 +423,7 @@ int main(void) {
     cmocka_unit_test(a_stale_map_is_refused),
     cmocka_unit_test(other_settings_do_not_matter),
     cmocka_unit_test(any_of_its_scenes_will_do),
+    cmocka_unit_test(accuracy_has_no_file),
     cmocka_unit_test(files_that_are_no_maps),
     cmocka_unit_test(a_damaged_tile_is_ray_traced),
     cmocka_unit_test(saving_can_fail_early),

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "map/view.h"
+
+/* From the first places where a finer level counts, NEED_SHARE, to those where all of it does. */
+static const double NEED_FADES = 0.25;
+
+/* How much the place wants a finer level than this one, from 0 to 1: interpolated, so that no seam shows where levels meet. Both levels
+ * count while the share of pixels that want more grows from NEED_SHARE on, and while the error is less than an octave above what is let
+ * pass. */
+static dsm_result need_at(view *v, uint32_t level, double x, double y, double *need)
+{
+  const face *f = &v->worker->map->projection.faces[v->at->face];
+  uint32_t width = level_pixels(f->width, level), height = level_pixels(f->height, level);
+  double size = (double)(1u << level);
+  x = x / size - 0.5;
+  y = y / size - 0.5;
+  int32_t i = round_down(x), j = round_down(y);
+  double across = x - i, up = y - j;
+  const double weight[4] = {(1 - across) * (1 - up), across * (1 - up), (1 - across) * up, across * up};
+  double octaves = 0, share = 0;
+  *need = 0;
+  for (uint32_t k = 0; k < 4; k++) {
+    uint32_t px = (uint32_t)i + (k & 1), py = (uint32_t)j + (k >> 1);
+    if (px >= width || py >= height || weight[k] == 0)
+      continue;
+    tile_key key = {v->at->face, level, px / TILE_SIDE, py / TILE_SIDE};
+    const tile *t;
+    dsm_result result = worker_tile(v->worker, &key, &t);
+    if (result != DSM_OK)
+      return result;
+    uint32_t n = tile_need_at(t, py % TILE_SIDE * TILE_SIDE + px % TILE_SIDE);
+    if (n == NEED_ALWAYS) {
+      *need = 1;
+      return DSM_OK;
+    }
+    octaves += weight[k] * (n > 0 ? n - 1 : 0) / NEED_OCTAVE;
+    share += n > 0 ? weight[k] : 0;
+  }
+  if (share > NEED_SHARE)
+    *need = fmin(1, (share - NEED_SHARE) / NEED_FADES) * fmin(1, octaves / share);
+  return DSM_OK;
+}
+
+/* What one level alone says is lost. */
+static dsm_result read_level(view *v, uint32_t level, double x, double y, double *grey, rgb *coloured)
+{
+  double grey_before = v->lost_grey;
+  rgb before = v->lost;
+  v->lost_grey = 0;
+  v->lost = rgb_grey(0);
+  if (v->plane_count)
+    view_see_planes(v, &VIEW_ONE_PLACE, level);
+  dsm_result result = view_add_bilinear(v, level, x, y, 1);
+  *grey = v->lost_grey;
+  *coloured = v->lost;
+  v->lost_grey = grey_before;
+  v->lost = before;
+  return result;
+}
+
+/* From 0 to 1: whether there can be more to see than this level tells. Where all of the light arrives, or none, there is not: pixels
+ * of which each may be 0 or 1 have the mean m and the variance m (1 - m). */
+static double in_question(const view *v, double grey, rgb coloured)
+{
+  double aim = v->worker->map->settings.accuracy, most = 0;
+  for (int c = 0; c < 3; c++) {
+    double lost = grey + coloured.c[c];
+    most = fmax(most, lost * (1 - lost));
+  }
+  return fmin(1, most / (4 * aim * aim));
+}
+
+dsm_result view_add_refined(view *v, const footprint *f, double x, double y, double share)
+{
+  for (uint32_t level = v->worker->map->first_level; share > 0; level--) {
+    double need = 0, grey, blind = v->blind;
+    rgb coloured;
+    dsm_result result = level > f->level ? need_at(v, level, x, y, &need) : DSM_OK;
+    if (result == DSM_OK)
+      result = read_level(v, level, x, y, &grey, &coloured);
+    if (result == DSM_OK)
+      need *= in_question(v, grey, coloured);
+    if (level == f->level + 1)
+      need *= 1 - f->coarser;
+    if (result == DSM_TRACE && need > 0) {
+      v->blind = blind;
+      continue;
+    }
+    if (result != DSM_OK)
+      return result;
+    v->blind = blind + share * (1 - need) * (v->blind - blind);
+    v->lost_grey += share * (1 - need) * grey;
+    for (int c = 0; c < 3; c++)
+      v->lost.c[c] += share * (1 - need) * coloured.c[c];
+    share *= need;
+  }
+  return DSM_OK;
+}
