@@ -148,6 +148,7 @@ render() {  # a scene, and its options
 # saved, loaded, and evicted while others read.
 run_program() {
   local size=(+W64 +H48 +A0.3) little=(+W32 +H24 -A)
+  ASAN_OPTIONS+=:fast_unwind_on_malloc=0   # POV-Ray has no frame pointers, and suppressions need names
   if [ "$which" = valgrind ]; then
     size=(+W32 +H24 -A) little=(+W16 +H12 -A) povray=$top/build/bin/povray
   else
