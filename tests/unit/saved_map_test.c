@@ -58,6 +58,14 @@ static void save(stage *s, const char *path) {
   assert_true(told_shares > 0);
 }
 
+/* A file of the scene under the first light. */
+static void save_scene(const shape *shapes, int count, const char *path) {
+  stage s;
+  stage_open(&s, shapes, count, light_of_kind(0), words);
+  save(&s, path);
+  stage_close(&s);
+}
+
 static dsm_receiver somewhere(rng *r) {
   dsm_receiver receiver = {.point = {rng_between(r, -2, 2), rng_between(r, -2, 2), rng_between(r, 2, 9)}};
   receiver.plane_count = rng_below(r, 2);
@@ -171,10 +179,7 @@ static void a_stale_map_is_refused(void **state) {
   shape shapes[MOST_SHAPES];
   int count = make_scene(0, shapes);
   const char *path = made_path("map.exr");
-  stage s;
-  stage_open(&s, shapes, count, light_of_kind(0), words);
-  save(&s, path);
-  stage_close(&s);
+  save_scene(shapes, count, path);
 
   assert_not_loaded(path, shapes, count, light_of_kind(2), words, "of a spotlight, and this is a parallel light");
   assert_not_loaded(path, shapes, count, spot_at(0, 0, -3.5, 0, 0, 1, 30), words, "its origin was <0, 0, -3>, and is <0, 0, -3.5>");
@@ -208,9 +213,7 @@ static void other_settings_do_not_matter(void **state) {
   int count = make_scene(0, shapes);
   const char *path = made_path("map.exr");
   stage s;
-  stage_open(&s, shapes, count, light_of_kind(0), words);
-  save(&s, path);
-  stage_close(&s);
+  save_scene(shapes, count, path);
   static const char *const free_words[] = {"bias 0.1", "blur 0.05", "cache 2"};
   for (size_t i = 0; i < 3; ++i) {
     stage_open(&s, shapes, count, light_of_kind(0), (const char *const[]){words[0], words[1], free_words[i], NULL});
@@ -255,9 +258,7 @@ static void accuracy_has_no_file(void **state) {
   int count = make_scene(0, shapes);
   const char *path = made_path("map.exr");
   stage s;
-  stage_open(&s, shapes, count, light_of_kind(0), words);
-  save(&s, path);
-  stage_close(&s);
+  save_scene(shapes, count, path);
   stage_open(&s, shapes, count, light_of_kind(0), (const char *const[]){"accuracy 0.02", NULL});
   assert_int_equal(dsm_api.load(s.worker, path), DSM_REFUSED);
   assert_non_null(strstr(s.w.last, "with accuracy can be neither saved nor loaded"));
