@@ -139,7 +139,6 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   const event *events = sink->ordered + begin;
   pixel_kind kind = kind_of(events, count);
   kind.volume |= memchr(sink->spared + first_ray, 1, samples) != NULL;
-  pixel->kind = (unsigned char)((kind.volume ? PIXEL_VOLUME : 0) | (kind.surface ? PIXEL_SURFACE : 0));
   step_input steps = {events, count, first_ray, samples, kind.coloured ? 3 : 1};
   s->average.count = 0;
   dsm_result result = kind.volume ? average_volume(job, s, sink, first_ray, samples)
@@ -148,6 +147,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   if (result != DSM_OK)
     return result;
   pixel->volume = kind.volume;
+  pixel->surface = kind.surface;
   pixel->coloured = kind.coloured && !is_grey(&s->average);
   int channels = pixel->coloured ? 3 : 1;
   const vertices *clean = &s->average;

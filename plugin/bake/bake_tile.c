@@ -97,14 +97,15 @@ static dsm_result probe(const bake_job *job, bake_scratch *s, const tile_key *ke
     if (all->place[k] % PROBED == 0 && all->place[k] / TILE_SIDE % PROBED == 0)
       few.place[few.count++] = all->place[k];
   dsm_result result = few.count ? bake_pass(job, s, key, FIRST_RAYS, &few, tally) : DSM_OK;
-  int kinds = 0;
+  int volume = 0, surface = 0;
   double noisy = 0;
   for (uint32_t k = 0; k < few.count; k++) {
     const baked_pixel *p = &s->pixels[few.place[k]];
-    kinds |= p->kind;
+    volume |= p->volume;
+    surface |= p->surface;
     noisy += fmin(1, FIRST_RAYS * p->variance / NOISY);
   }
-  *samples = kinds == PIXEL_VOLUME ? VOLUME_RAYS : 2 * noisy > few.count ? FILLED_RAYS : FIRST_RAYS;
+  *samples = volume && !surface ? VOLUME_RAYS : 2 * noisy > few.count ? FILLED_RAYS : FIRST_RAYS;
   s->stored.count = 0;
   return result;
 }

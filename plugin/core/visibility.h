@@ -124,11 +124,16 @@ static inline uint32_t visibility_code(const visibility *function, uint32_t vert
   return channel == 2 ? (uint32_t)(word >> function->codes->depth_shift) : codes_value(function->codes, word);
 }
 
+/* What a code stands for, in VALUE_STEPS; `most` is the largest code. */
+static inline uint32_t value_of_code(uint32_t code, uint32_t most)
+{
+  return (code * VALUE_STEPS + most / 2) / most;
+}
+
 /* In VALUE_STEPS. */
 static inline uint32_t visibility_stored(const visibility *function, uint32_t vertex, uint32_t channel)
 {
-  uint32_t most = function->codes->value_mask;
-  return (visibility_code(function, vertex, channel) * VALUE_STEPS + most / 2) / most;
+  return value_of_code(visibility_code(function, vertex, channel), function->codes->value_mask);
 }
 
 static inline __attribute__((always_inline)) visibility_key visibility_key_as(const visibility_codes *codes, double z, int are_whole)

@@ -5,16 +5,13 @@
 
 #include <stddef.h>
 
-enum { PIXEL_VOLUME = 1, PIXEL_SURFACE = 2 };
-
 typedef struct {
   size_t first, count;    /* of its vertices */
   int coloured, marked;   /* channels differ; light can grow (then no vertices) */
-  int volume;             /* not surfaces alone */
+  int volume, surface;    /* what its rays have met */
   double tolerance;       /* error that its compression was allowed */
   double variance;        /* of its rays' average: the noise that lasts, see noise_lasting; 0 unless `accuracy` wants it */
   unsigned char need;     /* of a finer level, see tile.h */
-  unsigned char kind;     /* what its rays have met: PIXEL_VOLUME, PIXEL_SURFACE */
   unsigned char absent;   /* not baked, as no look-up comes here; whoever does is to trace the ray */
 } baked_pixel;
 

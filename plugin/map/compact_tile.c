@@ -48,8 +48,7 @@ static uint32_t code_of_value(uint32_t value, uint32_t bits)
 
 static int tells(uint32_t bits, uint32_t value)
 {
-  uint32_t most = (1u << bits) - 1;
-  return (code_of_value(value, bits) * VALUE_STEPS + most / 2) / most == value;
+  return value_of_code(code_of_value(value, bits), (1u << bits) - 1) == value;
 }
 
 /* The least number of bits, from `bits` on, that tell all values of a pixel. */

@@ -11,7 +11,7 @@ typedef struct { double near_depth, quantum; } depth_scale;
 static uint16_t rounded(double value, uint32_t bits)
 {
   uint32_t most = (1u << bits) - 1, code = (uint32_t)(fmin(1, fmax(0, value)) * most + 0.5);
-  return (uint16_t)((code * VALUE_STEPS + most / 2) / most);
+  return (uint16_t)value_of_code(code, most);
 }
 
 static float rounded_depth(double z, const depth_scale *scale)
