@@ -20,7 +20,8 @@ mkdir "$work/new"
 
 mapfile -t series < <(sed -e 's/[[:space:]]*#.*//' -e '/^$/d' "$here/series")
 touched() { sed -n -E 's,^(---|\+\+\+) [ab]/([^[:space:]]+).*,\2,p' "$@" | sort -u; }
-in_series() { printf '%s\n' "${series[@]}" | grep -qxF "$1"; }
+# No `| grep -q` below: grep leaves at its first match, and pipefail then takes the writer's broken pipe for a failure.
+in_series() { [[ " ${series[*]} " == *" $1 "* ]]; }
 [ -z "$into" ] || in_series "$into" || { echo "refresh.sh: no $into in patches/series" >&2; exit 1; }
 
 declare -A owner
@@ -29,7 +30,7 @@ edited=$(cd "$work/old" && find source vfe unix -type f ! -path 'unix/config/*' 
 for file in $edited; do
   owner[$file]=$into
   for name in "${series[@]}"; do
-    if [ -z "$into" ] && touched "$here/$name" | grep -qxF "$file"; then owner[$file]=$name; fi
+    if [ -z "$into" ] && grep -qxF "$file" <<<"$(touched "$here/$name")"; then owner[$file]=$name; fi
   done
   if [ -z "${owner[$file]}" ]; then
     echo "refresh.sh: no patch touches $file; name the one it shall go to" >&2

@@ -31,7 +31,7 @@ for file in "${ours[@]}"; do
   case $file in
     *.md | *.patch) ;;
     *)
-      head -n 3 "$file" | grep -q 'SPDX-License-Identifier: AGPL-3.0-or-later' || bad "$file: no SPDX line at the top"
+      grep -q 'SPDX-License-Identifier: AGPL-3.0-or-later' <<<"$(head -n 3 "$file")" || bad "$file: no SPDX line at the top"
       lines=$(wc -l <"$file")
       [ "$lines" -le 600 ] || bad "$file: $lines lines, more than 600" ;;
   esac

@@ -8,15 +8,17 @@ failed=0
 bad() { echo "$*"; failed=1; }
 
 mapfile -t series < <(sed -e 's/[[:space:]]*#.*//' -e '/^$/d' series)
+# No `| grep -q` here: grep leaves at its first match, and pipefail then takes the writer's broken pipe for a failure.
 for file in *.patch; do
   [ -e "$file" ] || continue
-  printf '%s\n' "${series[@]}" | grep -qxF "$file" || bad "$file is not in the series"
+  [[ " ${series[*]} " == *" $file "* ]] || bad "$file is not in the series"
 done
 
 for name in "${series[@]}"; do
   [ -f "$name" ] || { bad "$name is in the series, but not here"; continue; }
+  header=$(sed '/^--- /,$d' "$name")
   for field in Description Author Last-Update; do
-    sed '/^--- /,$d' "$name" | grep -q "^$field: *[^ ]" || bad "$name: no $field:"
+    grep -q "^$field: *[^ ]" <<<"$header" || bad "$name: no $field:"
   done
   awk '
     function done() { if (first > 1 || last > 1) { print at ": more than one line of context"; wrong = 1 } first = last = seen = 0 }
