@@ -16,6 +16,7 @@ typedef struct {
   baked_pixel pixels[TILE_PIXELS];
   rounding rule;
   double least_tolerance;         /* that a pixel can have */
+  double ray_step;                /* what a step is at least that is not one ray's of a pixel alone; 0 where tolerance was given */
 } pyramid_scratch;
 
 /* The finer pixel in quarter `q` of pixel (x, y): its tile and its place there. */
@@ -73,10 +74,17 @@ static dsm_result make_pixel(pyramid_scratch *s, uint32_t x, uint32_t y, baked_p
     return result;
   out->coloured = coloured;
   out->tolerance = halved(squares, parts);
-  result = compress_minimal_after(s->average.data, s->average.count, coloured ? 3 : 1, out->tolerance,
-                                  rounding_spent(s->rule.value_bits, out->volume, s->least_tolerance), &s->stored);
+  double spent = rounding_spent(s->rule.value_bits, out->volume, s->least_tolerance), tall = fmax(out->tolerance, s->ray_step);
+  result = compress_minimal_after(s->average.data, s->average.count, coloured ? 3 : 1, tall, spent + (tall - out->tolerance),
+                                  &s->stored);
   out->count = s->stored.count - out->first;
   return result;
+}
+
+/* The automatic tolerance is half of the noise, and lets one ray's step pass: it lies where chance put it. */
+static double step_of_a_ray(const dsm_settings *settings, uint32_t level)
+{
+  return settings->tolerance < 0 ? 1.01 / ldexp(settings->samples, 2 * (int)level) : 0;
 }
 
 static void set_rounding(pyramid_scratch *s, const projection *p, const tile_key *key)
@@ -139,6 +147,7 @@ dsm_result pyramid_make(dsm_worker *worker, const tile_key *key, const tile **ou
     return DSM_NO_MEMORY;
   for (int q = 0; q < 4; q++)
     s->children[q] = children[q];
+  s->ray_step = step_of_a_ray(&worker->map->settings, key->level);
   set_rounding(s, &worker->map->projection, key);
   result = make_pixels(s, out);
   vertices_free(&s->parts);

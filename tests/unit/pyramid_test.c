@@ -140,6 +140,74 @@ static void tolerance_is_halved(void **state) {
   stage_close(&s);
 }
 
+enum { GRAINS = 4000 };
+
+/* Memory of a level's tiles. */
+static double bytes_of(stage *s, uint32_t level) {
+  const tile_grid *grid = &s->map->store.grids[0][level];
+  double sum = 0;
+  for (uint32_t y = 0; y < grid->up; ++y)
+    for (uint32_t x = 0; x < grid->across; ++x) {
+      uint32_t place;
+      const tile *t = tile_of(s, level, x * TILE_SIDE, y * TILE_SIDE, &place);
+      sum += t->kind == TILE_STORED ? t->size : 0;
+    }
+  return sum;
+}
+
+/* A pixel of level 1 is within half the finest tolerance of the average of the four below it. */
+static void near_its_parts(stage *s, uint32_t x, uint32_t y) {
+  static const double weights[4] = {0.25, 0.25, 0.25, 0.25};
+  vertices all = {0}, want = {0}, got = {0};
+  average_scratch scratch = {0};
+  size_t first[5];
+  double tolerance = 0;
+  uint32_t place;
+  for (uint32_t q = 0; q < 4; ++q) {
+    first[q] = all.count;
+    const tile *t = tile_of(s, 0, 2 * x + q % 2, 2 * y + q / 2, &place);
+    assert_int_equal(read_pixel(t, place, &all), DSM_OK);
+    tolerance = fmax(tolerance, t->kind == TILE_STORED ? (double)t->tolerance : 0);
+  }
+  first[4] = all.count;
+  average_input in = {all.data, first, weights, 4};
+  assert_int_equal(average_sweep(&in, &scratch, &want), DSM_OK);
+  const tile *coarse = tile_of(s, 1, x, y, &place);
+  assert_int_equal(read_pixel(coarse, place, &got), DSM_OK);
+  double moved = FLOATS + rounding_reach(&s->map->projection, 0, 1, 1);
+  double off = apart(&got, &want, moved);
+  if (!(off <= tolerance / 2 + 1e-5)) fail_msg("%g of %g", off, tolerance / 2);
+  average_free(&scratch);
+  vertices_free(&all);
+  vertices_free(&want);
+  vertices_free(&got);
+}
+
+/* Grains finer than a pixel, so that every ray ends elsewhere. At the automatic tolerance one ray's step is noise at each level, and
+ * all levels together take at most what LV 5.3 expects, 1.55 of the finest; but no level loses more than its tolerance. */
+static void steps_of_single_rays(void **state) {
+  (void)state;
+  static const char *const samples[] = {"samples 4", "samples 16"};
+  shape *grains = malloc(GRAINS * sizeof *grains);
+  rng r = rng_seeded(11);
+  for (int i = 0; i < GRAINS; ++i)
+    grains[i] = sphere_at(rng_between(&r, -1, 1), rng_between(&r, -1, 1), rng_between(&r, 2, 4), 0.01, 0);
+  for (int k = 0; k < 2; ++k) {
+    stage s;
+    stage_open(&s, grains, GRAINS, parallel_at(0, 0, 0, 0, 0, 1), WORDS("resolution 128", samples[k]));
+    worker_enter(s.worker);
+    const face *f = &s.map->projection.faces[0];
+    double base = bytes_of(&s, 0), all = base;
+    for (uint32_t level = 1; level < face_levels(f); ++level) all += bytes_of(&s, level);
+    if (!(all <= 1.55 * base)) fail_msg("%s: all levels take %g of the finest", samples[k], all / base);
+    for (int i = 0; i < 200; ++i)
+      near_its_parts(&s, (uint32_t)rng_between(&r, 0, f->width / 2), (uint32_t)rng_between(&r, 0, f->height / 2));
+    worker_leave(s.worker);
+    stage_close(&s);
+  }
+  free(grains);
+}
+
 /* A single pixel in the end, which has seen all; and where nothing is, nothing is stored at any level. */
 static void down_to_one_pixel(void **state) {
   (void)state;
@@ -195,6 +263,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(error_of_each_level),
     cmocka_unit_test(tolerance_is_halved),
+    cmocka_unit_test(steps_of_single_rays),
     cmocka_unit_test(down_to_one_pixel),
     cmocka_unit_test(marks_spread_upwards),
   };
