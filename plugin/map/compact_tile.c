@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "map/delta_tile.h"
+
 enum { NO_BIT = 1000 };   /* above all of a float */
 
 /* The lowest bit of a depth >= 0, as the exponent of 2. */
@@ -80,7 +82,7 @@ static void translate(const tile *from, uint32_t place, tile *to)
   visibility v = tile_visibility(from, place);
   size_t first = tile_first(from, place);
   for (uint32_t i = 0; i < v.count; i++) {
-    uint64_t depth = visibility_word(&v, i) >> from->codes.depth_shift, values[3];
+    uint64_t depth = visibility_word(&v, i) >> from->codes.depth_shift, values[3] = {0};
     if (codes->per_quantum > 0)
       depth = (uint64_t)(visibility_depth(&v, i) * codes->per_quantum);   /* exact */
     for (uint32_t c = 0; c < v.channels; c++)
@@ -100,8 +102,13 @@ tile *tile_compact(tile *t)
   uint32_t depth_bits = choose_depths(t, &codes), value_bits = choose_values(t);
   if (t->layout & TILE_COLOURED && depth_bits < value_bits)
     depth_bits = value_bits;
-  codes_set(&codes, (depth_bits + value_bits + 7) / 8, value_bits);
-  uint64_t size = codes.records + codes.record_bytes * records + behind;
+  codes_set(&codes, (depth_bits + value_bits + 7) / 8 * 8, value_bits);
+  uint64_t size = codes.records + codes.record_bits / 8 * records + behind;
+  tile *deltas = delta_tile_of(t, &codes, size < t->size ? size : t->size);
+  if (deltas) {
+    tile_destroy(t);
+    return deltas;
+  }
   tile *compact = size < t->size ? calloc(1, size) : NULL;
   if (!compact)
     return t;

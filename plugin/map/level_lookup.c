@@ -55,8 +55,34 @@ static int hides_more(view *v, const visibility *function, double z, double du, 
 typedef struct {
   int plain;       /* neither coloured nor marked nor wide */
   int whole;       /* see codes_are_whole */
-  size_t bytes;    /* of a record */
+  size_t bytes;    /* of a record; DELTAS, or UNKNOWN */
 } reading;
+
+enum { DELTAS = 0, UNKNOWN = 100 };
+
+/* visibility_find in a pixel that may be asked more than once, in deltas from front to back. */
+typedef struct {
+  const visibility *function;
+  uint32_t *hint;
+  delta_walk walk;
+} searched;
+
+static inline __attribute__((always_inline)) searched search_of(const view *v, const visibility *function, uint32_t *hint, reading as)
+{
+  searched pixel = {.function = function, .hint = hint};
+  if (as.bytes == DELTAS)
+    pixel.walk = delta_begin(&v->deltas, function->first, function->records);
+  return pixel;
+}
+
+static inline __attribute__((always_inline)) int find(const view *v, searched *pixel, visibility_key key, visibility_place *place,
+                                                      reading as)
+{
+  if (as.bytes == DELTAS)
+    return delta_find(pixel->function->codes, &v->deltas, &pixel->walk, key, place);
+  return as.bytes == UNKNOWN ? visibility_find(pixel->function, key, pixel->hint, place)
+                             : visibility_find_as(pixel->function, key, pixel->hint, place, as.bytes, as.whole);
+}
 
 /* Reads a pixel in front of where the receiver's own surface can be. Every plane bounds the surface by itself, so the
  * one that asks for the least bias is enough. du, dv: from the point to the pixel's centre.
@@ -66,17 +92,18 @@ typedef struct {
  *   1 ----+---.       middle of its range of depths (o). Where less is left there, an occluder is so near that the map
  *         |    `.o    cannot tell the two apart, and says so: unless far occluders have left so few rays that those
  *                     may well be the ones that the surface takes, and nothing else is close in front of it. */
-static inline __attribute__((always_inline)) dsm_result add_surface(view *v, const tile *t, const visibility *function, double du,
-                                                                    double dv, uint32_t *hint, double weight, reading as)
+static inline __attribute__((always_inline)) dsm_result add_surface(view *v, const tile *t, searched *pixel, double du, double dv,
+                                                                    double weight, reading as)
 {
   const visibility_codes *codes = &t->codes;
+  const visibility *function = pixel->function;
   double z = v->at->depth - t->near_depth;
   z -= DEPTH_ROUNDING * fabs(z) + v->own_rounding;
   double tangent = receiver_bias(&v->planes[0], du, dv);
   double other = v->plane_count > 1 ? receiver_bias(&v->planes[1], du, dv) : tangent;
   visibility_place front = {0, 0, 0, 0, 0}, middle = {0, 0, 0, 0, 0};
-  int dims = visibility_find_as(function, visibility_key_as(codes, z - (tangent < other ? tangent : other), as.whole), hint,
-                                &front, as.bytes, as.whole);
+  visibility_key key = visibility_key_as(codes, z - (tangent < other ? tangent : other), as.whole);
+  int dims = find(v, pixel, key, &front, as);
   double seen[3] = {1, 1, 1};
   int in_doubt = 0;
   for (uint32_t c = 0; c < function->channels; c++) {
@@ -86,8 +113,12 @@ static inline __attribute__((always_inline)) dsm_result add_surface(view *v, con
   }
   if (v->grazing && (tangent <= other || other > LARGE * v->pixel) && hides_more(v, function, z, du, dv, seen, weight))
     return DSM_TRACE;
-  in_doubt = in_doubt && visibility_find_as(function, visibility_key_as(codes, z - receiver_middle(&v->planes[0], du, dv), as.whole),
-                                            hint, &middle, as.bytes, as.whole);
+  if (in_doubt) {
+    visibility_key deeper = visibility_key_as(codes, z - receiver_middle(&v->planes[0], du, dv), as.whole);
+    if (deeper.word < key.word)   /* by rounding alone */
+      deeper = key;
+    in_doubt = find(v, pixel, deeper, &middle, as);
+  }
   for (uint32_t c = 0; c < function->channels; c++) {
     double taken = in_doubt ? seen[c] - visibility_value(function, &middle, c) : 0;
     if (taken > CONTACT * seen[c] + VIEW_LEAST && (taken > OWN || is_close(function, z - 2 * tangent, c, seen[c])))
@@ -103,18 +134,18 @@ static inline __attribute__((always_inline)) dsm_result add_pixel_as(view *v, co
 {
   visibility function;
   if (as.plain)
-    function = (visibility){&t->codes, codes_word(&t->codes, first), tile_counts(t)[place], 1};
+    function = (visibility){&t->codes, (uint32_t)first, tile_counts(t)[place], tile_counts(t)[place], 1};
   else if (tile_is_marked(t, place))
     return DSM_TRACE;
   else
     function = tile_visibility_from(t, place, first);
   if (function.count == 0)
     return DSM_OK;
-  uint32_t *hint = &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE];
+  searched pixel = search_of(v, &function, &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE], as);
   if (v->plane_count)
-    return add_surface(v, t, &function, (x + 0.5) * size - v->at->x, (y + 0.5) * size - v->at->y, hint, weight, as);
+    return add_surface(v, t, &pixel, (x + 0.5) * size - v->at->x, (y + 0.5) * size - v->at->y, weight, as);
   visibility_place at;
-  if (!visibility_find_as(&function, v->key, hint, &at, as.bytes, as.whole))
+  if (!find(v, &pixel, v->key, &at, as))
     return DSM_OK;
   if (function.channels == 1)
     v->lost_grey += weight * (1 - visibility_value(&function, &at, 0));
@@ -125,6 +156,11 @@ static inline __attribute__((always_inline)) dsm_result add_pixel_as(view *v, co
 }
 
 typedef dsm_result pixel_adder(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight);
+
+static dsm_result add_pixel_of_deltas(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
+{
+  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 1, DELTAS});
+}
 
 static dsm_result add_pixel_of_3(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
 {
@@ -143,7 +179,7 @@ static dsm_result add_pixel_of_6(view *v, const tile *t, uint32_t place, size_t 
 
 static dsm_result add_pixel(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
 {
-  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){0, codes_are_whole(&t->codes), t->codes.record_bytes});
+  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){0, codes_are_whole(&t->codes), UNKNOWN});
 }
 
 /* Four pixels of one tile, the first of them (x, y). Both rows are sent for before the first is read. */
@@ -153,8 +189,8 @@ static inline __attribute__((always_inline)) dsm_result add_rows(view *v, const 
   uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
   size_t low = tile_first(t, place), high = tile_first(t, place + TILE_SIDE);
   const unsigned char *records = (const unsigned char *)t + t->codes.records;
-  __builtin_prefetch(records + low * t->codes.record_bytes);
-  __builtin_prefetch(records + high * t->codes.record_bytes);
+  __builtin_prefetch(records + low * t->codes.record_bits / 8);
+  __builtin_prefetch(records + high * t->codes.record_bits / 8);
   dsm_result result = add(v, t, place, low, x, y, size, weight[0]);
   if (result == DSM_OK)
     result = add(v, t, place + 1, low + tile_records(t, place), x + 1, y, size, weight[1]);
@@ -173,7 +209,12 @@ static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, ui
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   if (!v->plane_count)
     v->key = visibility_key_of(&t->codes, v->at->depth - t->near_depth);
-  switch ((t->layout & ~TILE_REFINED) == 0 ? t->codes.record_bytes : 0) {
+  int plain = (t->layout & ~TILE_REFINED) == 0;
+  if (plain && codes_are_deltas(&t->codes)) {
+    v->deltas = delta_shape_of(&t->codes);
+    return add_rows(v, t, x, y, size, weight, add_pixel_of_deltas);
+  }
+  switch (plain ? t->codes.record_bits / 8 : 0) {
     case 3: return add_rows(v, t, x, y, size, weight, add_pixel_of_3);   /* the least that a float and a value take is 5 */
     case 4: return add_rows(v, t, x, y, size, weight, add_pixel_of_4);
     case 6: return add_rows(v, t, x, y, size, weight, add_pixel_of_6);   /* the most that another code and a value take is 5 */

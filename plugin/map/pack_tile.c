@@ -20,21 +20,31 @@ static float rounded_depth(double z, const depth_scale *scale)
   return (float)(scale->quantum > 0 ? ceil(relative / scale->quantum) * scale->quantum : relative);
 }
 
+static int is_one(const vertex *v, int channels, uint32_t value_bits)
+{
+  int ones = 0;
+  for (int c = 0; c < channels; c++)
+    ones += rounded(v->v.c[c], value_bits) == VALUE_STEPS;
+  return ones == channels;
+}
+
 /* Counts what is left of a pixel when only the first and last of vertices at one rounded depth stay, and puts
- * it into `t` if that is not NULL. Middle ones say nothing: a step is two vertices. */
+ * it into `t` if that is not NULL. Middle ones say nothing, as a step is two vertices; nor does 1 in front of the first step. */
 static size_t pack_pixel(const vertices *stored, const baked_pixel *p, const depth_scale *scale, uint32_t value_bits, tile *t,
                          uint32_t place)
 {
   const vertex *v = stored->data + p->first;
+  int channels = p->coloured ? 3 : 1, only_one = 0;
   size_t n = 0;
   float last = 0, before = 0;   /* the depths of the last two kept */
   for (size_t i = 0; i < p->count; i++) {
     float z = rounded_depth(v[i].z, scale);
-    if (n < 2 || z != last || z != before)
+    if (n < 2 ? !(only_one && z == last) : z != last || z != before)
       n++;
     before = n > 1 ? last : z;
     last = z;
-    for (uint32_t c = 0; t && c < (p->coloured ? 3u : 1u); c++)
+    only_one = n == 1 && is_one(&v[i], channels, value_bits);
+    for (uint32_t c = 0; t && c < (uint32_t)channels; c++)
       tile_put(t, place, (uint32_t)n - 1, c, z, rounded(v[i].v.c[c], value_bits));
   }
   return n;
@@ -76,17 +86,21 @@ static double steepest(const vertices *stored, const baked_pixel *p)
   return most;
 }
 
-/* The least power of two of which depths take no more bytes than with the largest that the rule allows; 0: a float tells no less. */
-static double quantum_of(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, double near_depth,
-                         double range)
+/* Largest quantum that the rule allows. */
+static double most_of(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, double near_depth)
 {
   double most = rule->quantum * (rule->perspective ? near_depth : 1), steep = 0;
   for (int i = 0; i < TILE_PIXELS; i++)
     if (pixels[i].volume)
       steep = fmax(steep, steepest(stored, &pixels[i]));
-  most = fmin(most, rule->slack / steep);
-  for (uint32_t bytes = 2; bytes < MOST_RECORD_BYTES; bytes++) {
-    int bits = (int)(8 * bytes - rule->value_bits), exponent;
+  return fmin(most, rule->slack / steep);
+}
+
+/* The least power of two of which depths take no more bytes in absolute records than with the largest quantum; 0: a float tells no less. */
+static double least_quantum(double most, uint32_t value_bits, double range)
+{
+  for (uint32_t bits_taken = 16; bits_taken < MOST_RECORD_BITS; bits_taken += 8) {
+    int bits = (int)(bits_taken - value_bits), exponent;
     bits = bits < MOST_CODE_BITS ? bits : MOST_CODE_BITS;
     frexp(range / (ldexp(1, bits) - 3), &exponent);   /* which is less than 2^exponent */
     if (bits > 2 && range > 0 && ldexp(1, exponent) <= most)
@@ -95,57 +109,85 @@ static double quantum_of(const baked_pixel pixels[TILE_PIXELS], const vertices *
   return 0;
 }
 
-/* The near depth is INFINITY if no pixel stores anything. */
-static depth_scale scale_of(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule)
+/* Where the nearest and the farthest vertex are; INFINITY, -INFINITY if no pixel stores anything. */
+static void ends_of(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, double *near_depth, double *far_depth)
 {
-  depth_scale scale = {INFINITY, 0};
-  double far_depth = -INFINITY;
+  *near_depth = INFINITY;
+  *far_depth = -INFINITY;
   for (int i = 0; i < TILE_PIXELS; i++)
     if (pixels[i].count) {
-      scale.near_depth = fmin(scale.near_depth, stored->data[pixels[i].first].z);
-      far_depth = fmax(far_depth, stored->data[pixels[i].first + pixels[i].count - 1].z);
+      *near_depth = fmin(*near_depth, stored->data[pixels[i].first].z);
+      *far_depth = fmax(*far_depth, stored->data[pixels[i].first + pixels[i].count - 1].z);
     }
-  if (rule->quantum > 0 && scale.near_depth < INFINITY)
-    scale.quantum = quantum_of(pixels, stored, rule, scale.near_depth, far_depth - scale.near_depth);
-  return scale;
 }
 
-dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, const tile **out)
+/* A new compact tile whose depths have this scale; NULL: no memory. */
+static tile *pack_at(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const depth_scale *scale, uint32_t value_bits,
+                     tile_plan *plan)
 {
-  depth_scale scale = scale_of(pixels, stored, rule);
-  int marked = 0, volume = 0;
+  int volume = 0;
   for (int i = 0; i < TILE_PIXELS; i++) {
-    marked |= pixels[i].marked || pixels[i].absent;
-    volume |= pixels[i].volume;
-  }
-  *out = NULL;
-  if (scale.near_depth == INFINITY && !marked) {
-    *out = &tile_lit;
-    return DSM_OK;
-  }
-  tile_plan plan;
-  for (int i = 0; i < TILE_PIXELS; i++) {
-    baked_pixel *p = &pixels[i];
-    p->coloured = p->coloured && stays_coloured(stored, p, rule->value_bits);
-    size_t kept = p->count ? pack_pixel(stored, p, &scale, rule->value_bits, NULL, 0) : 0;
+    const baked_pixel *p = &pixels[i];
+    size_t kept = p->count ? pack_pixel(stored, p, scale, value_bits, NULL, 0) : 0;
     if (kept > UINT32_MAX)
-      return DSM_NO_MEMORY;
-    plan.count[i] = (uint32_t)kept;
-    plan.coloured[i] = p->coloured != 0;
-    plan.marked[i] = p->marked || p->absent;
-    plan.need[i] = p->need;
+      return NULL;
+    plan->count[i] = (uint32_t)kept;
+    volume |= p->volume;
   }
-  tile *t = tile_create(&plan);
+  tile *t = tile_create(plan);
   if (!t)
-    return DSM_NO_MEMORY;
-  if (scale.near_depth < INFINITY) {
-    t->near_depth = scale.near_depth;
+    return NULL;
+  if (scale->near_depth < INFINITY) {
+    t->near_depth = scale->near_depth;
     t->tolerance = tolerance_of(pixels);
   }
   t->volume = volume != 0;
   for (uint32_t i = 0; i < TILE_PIXELS; i++)
     if (pixels[i].count)
-      pixels[i].count = pack_pixel(stored, &pixels[i], &scale, rule->value_bits, t, i);
-  *out = tile_compact(t);
+      pack_pixel(stored, &pixels[i], scale, value_bits, t, i);
+  return tile_compact(t);
+}
+
+/* With the largest quantum if that makes it a tile of deltas; in absolute records, finer ones cost nothing. */
+static tile *pack_best(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, tile_plan *plan)
+{
+  depth_scale scale = {INFINITY, 0};
+  double far_depth, most, least;
+  ends_of(pixels, stored, &scale.near_depth, &far_depth);
+  if (!(rule->quantum > 0 && scale.near_depth < INFINITY))
+    return pack_at(pixels, stored, &scale, rule->value_bits, plan);
+  most = most_of(pixels, stored, rule, scale.near_depth);
+  least = least_quantum(most, rule->value_bits, far_depth - scale.near_depth);
+  scale.quantum = most > 0 ? ldexp(1, ilogb(most)) : 0;
+  tile *t = pack_at(pixels, stored, &scale, rule->value_bits, plan);
+  if (!t || scale.quantum == least || codes_are_deltas(&t->codes))
+    return t;
+  tile_destroy(t);
+  scale.quantum = least;
+  return pack_at(pixels, stored, &scale, rule->value_bits, plan);
+}
+
+dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, const tile **out)
+{
+  tile_plan plan;
+  int stored_or_marked = 0;
+  *out = NULL;
+  for (int i = 0; i < TILE_PIXELS; i++) {
+    baked_pixel *p = &pixels[i];
+    p->coloured = p->coloured && stays_coloured(stored, p, rule->value_bits);
+    plan.coloured[i] = p->coloured != 0;
+    plan.marked[i] = p->marked || p->absent;
+    plan.need[i] = p->need;
+    stored_or_marked |= p->count || plan.marked[i];
+  }
+  if (!stored_or_marked) {
+    *out = &tile_lit;
+    return DSM_OK;
+  }
+  *out = pack_best(pixels, stored, rule, &plan);
+  if (!*out)
+    return DSM_NO_MEMORY;
+  for (int i = 0; i < TILE_PIXELS; i++)
+    pixels[i].count = plan.count[i];
   return DSM_OK;
 }

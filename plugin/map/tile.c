@@ -22,21 +22,15 @@ static void set_bits(tile *t, size_t offset, const unsigned char *flags)
       ((unsigned char *)t)[offset + i / 8] |= (unsigned char)(1 << i % 8);
 }
 
-/* The narrow table has 16 bits for the records in front of eight pixels, and a byte for those of seven of them. */
+/* The narrow table has 16 bits for the records in front of eight pixels, and a byte for those of one. */
 static int is_wide(const tile_plan *plan)
 {
-  uint64_t first = 0, group = 0;
+  uint64_t first = 0;
   for (int i = 0; i < TILE_PIXELS; i++) {
-    if (i % 8 == 0) {
-      if (first > UINT16_MAX)
-        return 1;
-      group = 0;
-    }
     uint64_t records = records_of(plan, i);
-    group += records;
-    first += records;
-    if (records > UINT8_MAX || (i % 8 < 7 && group > UINT8_MAX))
+    if ((i % 8 == 0 && first > UINT16_MAX) || records > UINT8_MAX)
       return 1;
+    first += records;
   }
   return 0;
 }
@@ -76,7 +70,7 @@ static void fill_table(tile *t, const tile_plan *plan)
     wide[TILE_PIXELS] = first;
 }
 
-tile *tile_create(const tile_plan *plan)
+tile *tile_create_empty(const tile_plan *plan, uint32_t record_bits, uint32_t padding)
 {
   uint64_t records = 0;
   for (int i = 0; i < TILE_PIXELS; i++)
@@ -84,11 +78,11 @@ tile *tile_create(const tile_plan *plan)
   uint8_t layout = layout_of(plan);
   size_t table = layout & TILE_WIDE ? (TILE_PIXELS + 1) * sizeof(uint32_t) : TILE_PIXELS / 8 * sizeof(uint16_t) + TILE_PIXELS;
   size_t data = sizeof(tile) + table + (layout & TILE_COLOURED ? BITS : 0) + (layout & TILE_MARKED ? BITS : 0);
-  uint64_t size = data + MOST_RECORD_BYTES * records + (layout & TILE_REFINED ? TILE_PIXELS : 0);
+  uint64_t size = data + (record_bits * records + 7) / 8 + padding + (layout & TILE_REFINED ? TILE_PIXELS : 0);
   tile *t = size <= UINT32_MAX ? calloc(1, size) : NULL;
   if (!t)
     return NULL;
-  codes_set(&t->codes, MOST_RECORD_BYTES, VALUE_BITS);
+  codes_set(&t->codes, MOST_RECORD_BITS, VALUE_BITS);
   t->codes.records = (uint16_t)data;
   t->size = (uint32_t)size;
   t->kind = TILE_STORED;
@@ -103,9 +97,14 @@ tile *tile_create(const tile_plan *plan)
   return t;
 }
 
+tile *tile_create(const tile_plan *plan)
+{
+  return tile_create_empty(plan, MOST_RECORD_BITS, 0);
+}
+
 void tile_put_record(tile *t, size_t index, uint64_t record)
 {
-  uint32_t bytes = t->codes.record_bytes;
+  uint32_t bytes = t->codes.record_bits / 8;
   memcpy((unsigned char *)t + t->codes.records + index * bytes, &record, bytes);
 }
 

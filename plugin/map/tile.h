@@ -5,13 +5,14 @@
  *   +--------+--------------------+----------------+--------------+-----------------------------------+-------------+
  *   | header | where pixels begin | which coloured | which marked | records of pixel 0 | of pixel 1 | … | need of all |
  *   +--------+--------------------+----------------+--------------+-----------------------------------+-------------+
- *              320 or 1028 bytes    256 bits if any  256 bits if any  2 to 6 bytes each                 256 bytes if any
+ *              320 or 1028 bytes    256 bits if any  256 bits if any  8 to 48 bits each                 256 bytes if any
  *
  * Where pixels begin: 32 times 16 bits, of every eighth pixel, and 256 bytes, how many records each has; where that
  * is not enough, 257 times 32 bits.
  *
- * A vertex takes 3 or 4 bytes in most maps, 6 in those without tolerance, and twice as many where it is coloured: see
- * visibility.h for how, and rounding.h for how many bits its numbers need. Its depth is relative to the tile's near
+ * A grey vertex takes one and a half to two bytes in most maps that have a tolerance, 11 to 16 bits and now and then as many again
+ * (delta_records.h); in pixels that are long, coloured, or of noise with values of 16 bits, 3 to 6 bytes (visibility.h), and twice as
+ * many where it is coloured. For how many bits its numbers need see rounding.h. Its depth is relative to the tile's near
  * depth, a double: the nearest vertex of the tile itself, so that the digits cover the tile's range of depths and not the
  * light's distance. A pixel without vertices takes a byte and a quarter.
  */
@@ -84,6 +85,8 @@ extern const tile tile_lit, tile_failed;
 tile *tile_create(const tile_plan *plan);
 /* One channel of a vertex, in a tile that is not compact. Grey pixels have channel 0 alone. */
 void tile_put(tile *t, uint32_t place, uint32_t vertex, uint32_t channel, float depth, uint16_t value);
+/* The same with records of so many bits, and bytes behind them, for who fills them himself. */
+tile *tile_create_empty(const tile_plan *plan, uint32_t record_bits, uint32_t padding);
 void tile_destroy(const tile *t);   /* the shared ones may be passed too */
 
 void tile_put_record(tile *t, size_t index, uint64_t record);
@@ -104,10 +107,11 @@ static inline uint32_t tile_first(const tile *t, uint32_t place)
 {
   if (t->layout & TILE_WIDE)
     return ((const uint32_t *)(const void *)(t + 1))[place];
-  uint64_t counts;   /* of eight pixels; the product's top byte adds up those in front of this one */
+  uint64_t counts, pairs = 0x00FF00FF00FF00FFu;   /* the product's top 16 bits add up those in front of this one, two by two */
   memcpy(&counts, tile_counts(t) + (place & ~7u), sizeof counts);
   counts = counts << 8 << (56 - 8 * (place & 7));
-  return tile_starts(t)[place / 8] + (uint32_t)(counts * 0x0101010101010101u >> 56);
+  counts = (counts & pairs) + (counts >> 8 & pairs);
+  return tile_starts(t)[place / 8] + (uint32_t)(counts * 0x0001000100010001u >> 48);
 }
 
 static inline uint32_t tile_records(const tile *t, uint32_t place)
@@ -138,24 +142,21 @@ static inline uint32_t tile_need_at(const tile *t, uint32_t place)
   return t->layout & TILE_REFINED ? ((const unsigned char *)t)[t->size - TILE_PIXELS + place] : 0;
 }
 
-/* The pixel's vertices, which begin with a record; none if it is lit or marked. */
+/* For evaluation alone: `count` of deltas is that of their records. The pixel's records begin with the `first`. */
 static inline visibility tile_visibility_from(const tile *t, uint32_t place, size_t first)
 {
-  visibility v;
-  v.codes = &t->codes;
-  v.word = codes_word(&t->codes, first);
-  v.count = tile_records(t, place);
-  v.channels = 1;
-  if (tile_is_coloured(t, place)) {
-    v.channels = 3;
-    v.count /= 2;
-  }
-  return v;
+  uint32_t records = tile_records(t, place);
+  int coloured = tile_is_coloured(t, place);
+  return (visibility){&t->codes, (uint32_t)first, records, coloured ? records / 2 : records, coloured ? 3 : 1};
 }
 
+/* The pixel's vertices; none if it is lit or marked. */
 static inline visibility tile_visibility(const tile *t, uint32_t place)
 {
-  return tile_visibility_from(t, place, tile_first(t, place));
+  visibility v = tile_visibility_from(t, place, tile_first(t, place));
+  if (codes_are_deltas(&t->codes))
+    v.count = delta_vertices(v.codes, v.first, v.records);
+  return v;
 }
 
 #endif

@@ -27,6 +27,7 @@ typedef struct {
   double lost_grey;       /* share of light that does not arrive, weighted: in pixels without colour */
   rgb lost;               /* and in those with colour */
   visibility_key key;     /* the point's own depth, in the tile that is being read */
+  delta_word_shape deltas;   /* of that tile, if it has deltas */
 } view;
 
 /* Less light than this is not worth a ray; so a surface that sees no more than twice as much is in no doubt. */

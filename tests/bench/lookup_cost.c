@@ -2,7 +2,7 @@
 /*
  * What a look-up costs once the tiles are there, in nanoseconds on one thread: the median of nine runs.
  *
- *   lookup_cost [RESOLUTION [SAMPLES [BLUR]]]     512 16 0
+ *   lookup_cost [RESOLUTION [SAMPLES [BLUR [TOLERANCE]]]]     512 16 0 automatic
  *
  * The scene is like hair for a map: a parallel light's rays each end at a random depth in a layer above a floor. Points
  * are visited along scan lines of a picture (coherent) or anywhere (random), in the air or on the floor with its plane.
@@ -106,6 +106,8 @@ int main(int argc, char **argv)
   set(settings, "resolution", resolution);
   set(settings, "samples", samples);
   set(settings, "blur", blur);
+  if (argc > 4)
+    set(settings, "tolerance", atof(argv[4]));
   if (!points || dsm_api.map_create(&host, &light, settings, &map) != DSM_OK
       || dsm_api.worker_create(map, NULL, &worker) != DSM_OK)
     return 1;

@@ -19,7 +19,7 @@ typedef struct {
 
 static visibility plain(block *b, const float *depth, const uint16_t *value, uint32_t count, uint32_t channels) {
   memset(b, 0, sizeof *b);
-  codes_set(&b->codes, MOST_RECORD_BYTES, VALUE_BITS);
+  codes_set(&b->codes, MOST_RECORD_BITS, VALUE_BITS);
   b->codes.records = offsetof(block, bytes);
   for (uint32_t i = 0; i < count; ++i) {
     unsigned char *record = b->bytes + 6 * (size_t)i, *second = record + 6 * (size_t)count;
@@ -27,7 +27,7 @@ static visibility plain(block *b, const float *depth, const uint16_t *value, uin
     memcpy(record + sizeof *value, &depth[i], sizeof *depth);
     if (channels == 3) memcpy(second, &value[i * channels + 1], 2 * sizeof *value);
   }
-  return (visibility){&b->codes, codes_word(&b->codes, 0), count, channels};
+  return (visibility){&b->codes, 0, count, count, channels};
 }
 
 /* A function twice: as stored, and as vertices with the same numbers. */
