@@ -19,6 +19,13 @@ static const double BEND_SHARE = 2;
  * are stratified: the rest of what they bend is taken for an edge. */
 static const double NOISE_KNOWN = 0.1;
 
+/* Of the squared bend: what bends where rays meet volumes alone is no edge but a curve, or chance, as one ray tells little of a pixel. */
+static const double SMOOTH = 8;
+
+/* Lines of few pixels may bend by so many times the aim, root mean square. An eighth of that is missed between them; a step less than as
+ * high is taken for a curve. */
+static const double SPARSE_BEND = 12;
+
 /* Less light than this behind everything: the last surface is opaque, a ground on which shadows are seen. */
 static const double DARK = 0.02;
 
@@ -98,12 +105,25 @@ static int is_known(const baked_pixel *p)
   return !p->marked && !p->absent;
 }
 
-/* The square of the least bend that values between the bounds can have, less what noise is expected to make of it. */
-static double squared_bend(const baked_pixel pixels[TILE_PIXELS], const layer *l, uint32_t before, uint32_t here, uint32_t after)
+static int is_smooth(const baked_pixel *p)
+{
+  return !p->surface && (p->volume || p->clear);
+}
+
+/* The least bend that values between the bounds can have. */
+static double least_bend(const layer *l, uint32_t before, uint32_t here, uint32_t after)
 {
   double hollow = l->low[before] + l->low[after] - 2 * l->high[here];
   double hill = 2 * l->low[here] - l->high[before] - l->high[after];
-  double bend = fmax(0, fmax(hollow, hill));
+  return fmax(0, fmax(hollow, hill));
+}
+
+/* Its square, less what noise is expected to make of it. */
+static double squared_bend(const baked_pixel pixels[TILE_PIXELS], const layer *l, uint32_t before, uint32_t here, uint32_t after)
+{
+  double bend = least_bend(l, before, here, after);
+  if (is_smooth(&pixels[before]) && is_smooth(&pixels[here]) && is_smooth(&pixels[after]))
+    bend /= sqrt(SMOOTH);
   return bend * bend - NOISE_KNOWN * (pixels[before].variance + 4 * pixels[here].variance + pixels[after].variance);
 }
 
@@ -215,4 +235,32 @@ void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const ne
     if (is_known(&pixels[i]) && is_bent(most, i, least))
       pixels[i].need = need_of(around(pixels, most, i) / least);
   }
+}
+
+/* The mean square of what lines of three pixels bend, in both directions. */
+static double mean_bend(const layer *l, const sparse_grid *grid)
+{
+  double sum = 0;
+  for (uint32_t k = 0; k < grid->side; k++)
+    for (uint32_t i = 1; i + 1 < grid->side; i++) {
+      double across = least_bend(l, sparse_place(grid, i - 1, k), sparse_place(grid, i, k), sparse_place(grid, i + 1, k));
+      double up = least_bend(l, sparse_place(grid, k, i - 1), sparse_place(grid, k, i), sparse_place(grid, k, i + 1));
+      sum += across * across + up * up;
+    }
+  return sum / (grid->side * (grid->side - 2));
+}
+
+int sparse_is_enough(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits, const sparse_grid *grid)
+{
+  double depths[DEPTHS], most = SPARSE_BEND * limits->aim;
+  uint32_t count = choose_depths(pixels, stored, depths);
+  int channels = has_colour(pixels) ? 3 : 1;
+  layer l;
+  for (int c = 0; c < channels; c++)
+    for (uint32_t k = 0; k < count; k++) {
+      fill_layer(pixels, stored, limits, depths[k], c, &l);
+      if (mean_bend(&l, grid) > most * most)
+        return 0;
+    }
+  return 1;
 }
