@@ -115,7 +115,8 @@ static double least_bend(const layer *l, uint32_t before, uint32_t here, uint32_
 {
   double hollow = l->low[before] + l->low[after] - 2 * l->high[here];
   double hill = 2 * l->low[here] - l->high[before] - l->high[after];
-  return fmax(0, fmax(hollow, hill));
+  double more = hollow > hill ? hollow : hill;   /* fmax is a call, and this is called for each pixel and depth */
+  return more > 0 ? more : 0;
 }
 
 /* Its square, less what noise is expected to make of it. */
@@ -127,19 +128,16 @@ static double squared_bend(const baked_pixel pixels[TILE_PIXELS], const layer *l
   return bend * bend - NOISE_KNOWN * (pixels[before].variance + 4 * pixels[here].variance + pixels[after].variance);
 }
 
-/* Of each pixel in both directions, where it has two neighbours in the tile. */
-static void measure(const baked_pixel pixels[TILE_PIXELS], const layer *l, double bends[TILE_PIXELS])
+/* Of a pixel in both directions, where it has two neighbours in the tile. */
+static double bends_at(const baked_pixel pixels[TILE_PIXELS], const layer *l, uint32_t i)
 {
-  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
-    bends[i] = 0;
-    for (uint32_t axis = 0; axis < 2; axis++) {
-      uint32_t at = axis ? i / TILE_SIDE : i % TILE_SIDE, step = axis ? TILE_SIDE : 1;
-      if (at == 0 || at == TILE_SIDE - 1)
-        continue;
-      if (is_known(&pixels[i - step]) && is_known(&pixels[i]) && is_known(&pixels[i + step]))
-        bends[i] += squared_bend(pixels, l, i - step, i, i + step);
-    }
+  double sum = 0;
+  for (uint32_t axis = 0; axis < 2; axis++) {
+    uint32_t at = axis ? i / TILE_SIDE : i % TILE_SIDE, step = axis ? TILE_SIDE : 1;
+    if (at > 0 && at < TILE_SIDE - 1 && is_known(&pixels[i - step]) && is_known(&pixels[i + step]))
+      sum += squared_bend(pixels, l, i - step, i, i + step);
   }
+  return sum;
 }
 
 /* The mean of a known pixel and its neighbours in the tile. */
@@ -169,8 +167,9 @@ static int is_in_question(const layer *l, uint32_t place, double aim)
   tile_patch patch = tile_around(place);
   double low = 1, high = 0;
   for (uint32_t k = 0; k < patch.count; k++) {
-    low = fmin(low, l->low[patch.place[k]]);
-    high = fmax(high, l->high[patch.place[k]]);
+    double least = l->low[patch.place[k]], most = l->high[patch.place[k]];
+    low = least < low ? least : low;
+    high = most > high ? most : high;
   }
   return high > aim * aim && low < 1 - aim * aim;
 }
@@ -178,11 +177,13 @@ static int is_in_question(const layer *l, uint32_t place, double aim)
 /* Keeps the largest of what bends at each pixel. */
 static void keep_largest(const baked_pixel pixels[TILE_PIXELS], const layer *l, double aim, double most[TILE_PIXELS])
 {
-  double bends[TILE_PIXELS];
-  measure(pixels, l, bends);
-  for (uint32_t i = 0; i < TILE_PIXELS; i++)
-    if (is_known(&pixels[i]) && is_in_question(l, i, aim))
-      most[i] = fmax(most[i], bends[i] / SQUARED_BENDS);
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    if (!is_known(&pixels[i]))
+      continue;
+    double bends = bends_at(pixels, l, i) / SQUARED_BENDS;
+    if (bends > most[i] && is_in_question(l, i, aim))
+      most[i] = bends;
+  }
 }
 
 static int is_at_border(uint32_t place)
