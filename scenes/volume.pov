@@ -5,12 +5,18 @@
 //
 // Declare=MS=80       media samples of a ray
 // Declare=Density=9   extinction of bone, a unit of length
+// Declare=White=0     1: black sky, white light and no glow, so that the picture shows the light that shadows leave
+// Declare=Resolution=256 Declare=Samples=4   of the map
+// Declare=Accuracy=0.01 in place of these two; Declare=Bound=8192: the finest resolution that it may use
 // The first render writes the volume, 64 voxels each way, to volume.df3 in the current folder; later ones read it.
 #version 3.7;
 global_settings { assumed_gamma 1 }
 
-#ifndef (MS)      #declare MS = 80; #end
-#ifndef (Density) #declare Density = 9; #end
+#ifndef (MS)         #declare MS = 80; #end
+#ifndef (Density)    #declare Density = 9; #end
+#ifndef (White)      #declare White = 0; #end
+#ifndef (Resolution) #declare Resolution = 256; #end
+#ifndef (Samples)    #declare Samples = 4; #end
 #declare Voxels = 64;
 
 #if (!file_exists("volume.df3"))
@@ -44,13 +50,29 @@ camera {
 }
 
 light_source {
-  <-5.5, 6, -3.2>, rgb <1.0, 0.95, 0.88>*1.15
+  <-5.5, 6, -3.2>, rgb #if (White) 1 #else <1.0, 0.95, 0.88>*1.15 #end
   spotlight point_at 0 radius 14 falloff 20
-  deep_shadow { resolution 256 samples 4 }
+  deep_shadow {
+    #ifdef (Accuracy)
+      accuracy Accuracy
+      #ifdef (Bound) resolution Bound #end
+    #else
+      resolution Resolution samples Samples
+    #end
+  }
 }
 
-background { rgb <0.05, 0.06, 0.08> }
-box { <-6, -1.2, -6>, <6, -1.1, 6> pigment { rgb <0.45, 0.48, 0.52> } finish { ambient 0.02 diffuse 0.9 } }
+#if (!White)
+  background { rgb <0.05, 0.06, 0.08> }
+#end
+box {
+  <-6, -1.2, -6>, <6, -1.1, 6>
+  #if (White)
+    pigment { rgb 1 } finish { ambient 0 diffuse 1 }
+  #else
+    pigment { rgb <0.45, 0.48, 0.52> } finish { ambient 0.02 diffuse 0.9 }
+  #end
+}
 
 difference {
   box { -1, 1 }
@@ -61,7 +83,7 @@ difference {
     media {
       method 2 intervals 1 samples MS
       scattering { 1, rgb Density }
-      emission rgb 0.03*Density
+      emission rgb (White ? 0 : 0.03*Density)
       density {
         density_file df3 "volume.df3" interpolate 1
         translate -0.5

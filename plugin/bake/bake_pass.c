@@ -95,4 +95,5 @@ void bake_scratch_free(bake_scratch *s)
   sink_free(&s->sink);
   pixel_scratch_free(&s->pixel);
   vertices_free(&s->stored);
+  vertices_free(&s->near_by);
 }

@@ -20,6 +20,7 @@ typedef struct {
   dsm_sink sink;
   pixel_scratch pixel;
   vertices stored;
+  vertices near_by;   /* of sparse_tile.c: the functions that one is averaged from */
   baked_pixel pixels[TILE_PIXELS];   /* vertices in `stored` */
 } bake_scratch;
 

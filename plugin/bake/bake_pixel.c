@@ -66,16 +66,24 @@ static dsm_result make_room(pixel_scratch *s, uint32_t samples)
   return DSM_OK;
 }
 
+/* Whether it takes no light, as the container of a volume. */
+static int is_clear(const event *e)
+{
+  return e->transmittance.c[0] == 1 && e->transmittance.c[1] == 1 && e->transmittance.c[2] == 1;
+}
+
 /* What the events of a pixel are. */
-typedef struct { int coloured, volume, surface; } pixel_kind;
+typedef struct { int coloured, volume, surface, clear; } pixel_kind;
 
 static pixel_kind kind_of(const event *events, size_t count)
 {
-  pixel_kind kind = {0, 0, 0};
+  pixel_kind kind = {0, 0, 0, 0};
   for (size_t i = 0; i < count; i++) {
     kind.coloured |= !rgb_is_grey(events[i].transmittance);
     if (events[i].back > events[i].front)
       kind.volume = 1;
+    else if (is_clear(&events[i]))
+      kind.clear = 1;
     else
       kind.surface = 1;
   }
@@ -148,6 +156,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
     return result;
   pixel->volume = kind.volume;
   pixel->surface = kind.surface;
+  pixel->clear = kind.clear;
   pixel->coloured = kind.coloured && !is_grey(&s->average);
   int channels = pixel->coloured ? 3 : 1;
   const vertices *clean = &s->average;

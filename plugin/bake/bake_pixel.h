@@ -16,6 +16,7 @@ typedef struct {
   void *host_data;              /* of the worker */
   const projection *projection;
   const dsm_settings *settings;
+  const dsm_light *light;       /* its casters; NULL: nobody knows them */
 } bake_job;
 
 /* Memory that a worker keeps from pixel to pixel. Zero-initialise. */

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "bake/seconds.h"
+#include "bake/sparse_tile.h"
 #include "bake/tile_need.h"
 #include "core/face_fit.h"
 #include "map/pack_tile.h"
@@ -88,7 +89,7 @@ static dsm_result bake_more(const bake_job *job, bake_scratch *s, const tile_key
   return result;
 }
 
-/* How many rays the pixels of a tile of the first level take, from every PROBEDth of them in both directions. */
+/* How many rays the pixels of a tile of the first level take, told by every PROBEDth of them in both directions. */
 static dsm_result probe(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all, uint32_t *samples,
                         tile_tally *tally)
 {
@@ -120,12 +121,28 @@ static uint32_t edge_rays(double aim)
   return rays;
 }
 
-static dsm_result choose_rays(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all, uint32_t *samples,
-                              tile_tally *tally)
+/* At the first level; 0: there is nothing to bake, or all is baked. */
+static dsm_result choose_first_rays(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all,
+                                    const need_limits *limits, uint32_t *samples, tile_tally *tally)
+{
+  sparse_outcome outcome = SPARSE_NEVER;
+  uint32_t casters = casters_above(job, key, 2);
+  *samples = 0;
+  dsm_result result = casters == 1 ? bake_sparsely(job, s, key, all, limits, &outcome, tally) : DSM_OK;
+  if (result != DSM_OK || casters == 0 || outcome == SPARSE_DONE)
+    return result;
+  if (outcome == SPARSE_NEVER)
+    return probe(job, s, key, all, samples, tally);
+  *samples = VOLUME_RAYS;
+  return DSM_OK;
+}
+
+static dsm_result choose_rays(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all,
+                              const need_limits *limits, uint32_t *samples, tile_tally *tally)
 {
   dsm_result result = DSM_OK;
   if (key->level >= first_level(job->settings))
-    result = probe(job, s, key, all, samples, tally);
+    result = choose_first_rays(job, s, key, all, limits, samples, tally);
   else
     *samples = 16 * all->count > 15 * TILE_PIXELS ? FILLED_RAYS : edge_rays(job->settings->accuracy);
   if (*samples > job->settings->samples)
@@ -138,15 +155,15 @@ static dsm_result bake_adaptively(const bake_job *job, bake_scratch *s, const ti
                                   tile_tally *tally)
 {
   uint32_t rays[TILE_PIXELS] = {0}, samples;
-  dsm_result result = choose_rays(job, s, key, all, &samples, tally);
-  if (result != DSM_OK)
-    return result;
-  for (uint32_t k = 0; k < all->count; k++)
-    rays[all->place[k]] = samples;
   const face *f = &job->projection->faces[key->face];
   double size = ldexp(fmax(f->pixel_u, f->pixel_v), (int)key->level);
   int perspective = job->projection->perspective;
   need_limits limits = {perspective ? size : 0, perspective ? 0 : size, job->settings->accuracy};
+  dsm_result result = choose_rays(job, s, key, all, &limits, &samples, tally);
+  if (result != DSM_OK || samples == 0)
+    return result;
+  for (uint32_t k = 0; k < all->count; k++)
+    rays[all->place[k]] = samples;
   result = bake_pass(job, s, key, samples, all, tally);
   for (int added = 1; result == DSM_OK && added;) {
     if (key->level > 0)

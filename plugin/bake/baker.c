@@ -36,7 +36,7 @@ dsm_result baker_worker_create(dsm_map *map, void *host_data, dsm_worker **worke
   dsm_result result = DSM_NO_MEMORY;
   if (b) {
     b->maker = (tile_maker){make, destroy};
-    b->job = (bake_job){&map->host, host_data, &map->projection, &map->settings};
+    b->job = (bake_job){&map->host, host_data, &map->projection, &map->settings, &map->light};
     result = worker_create(map, host_data, &b->maker, worker);
     if (result != DSM_OK)
       destroy(&b->maker);

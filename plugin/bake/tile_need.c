@@ -19,6 +19,13 @@ static const double BEND_SHARE = 2;
  * are stratified: the rest of what they bend is taken for an edge. */
 static const double NOISE_KNOWN = 0.1;
 
+/* Of the squared bend: what bends where rays meet volumes alone is no edge but a curve, or chance, as one ray tells little of a pixel. */
+static const double SMOOTH = 8;
+
+/* Lines of few pixels may bend by so many times the aim, root mean square. An eighth of that is missed between them; a step less than as
+ * high is taken for a curve. */
+static const double SPARSE_BEND = 12;
+
 /* Less light than this behind everything: the last surface is opaque, a ground on which shadows are seen. */
 static const double DARK = 0.02;
 
@@ -98,28 +105,39 @@ static int is_known(const baked_pixel *p)
   return !p->marked && !p->absent;
 }
 
-/* The square of the least bend that values between the bounds can have, less what noise is expected to make of it. */
-static double squared_bend(const baked_pixel pixels[TILE_PIXELS], const layer *l, uint32_t before, uint32_t here, uint32_t after)
+static int is_smooth(const baked_pixel *p)
+{
+  return !p->surface && (p->volume || p->clear);
+}
+
+/* The least bend that values between the bounds can have. */
+static double least_bend(const layer *l, uint32_t before, uint32_t here, uint32_t after)
 {
   double hollow = l->low[before] + l->low[after] - 2 * l->high[here];
   double hill = 2 * l->low[here] - l->high[before] - l->high[after];
-  double bend = fmax(0, fmax(hollow, hill));
+  double more = hollow > hill ? hollow : hill;   /* fmax is a call, and this is called for each pixel and depth */
+  return more > 0 ? more : 0;
+}
+
+/* Its square, less what noise is expected to make of it. */
+static double squared_bend(const baked_pixel pixels[TILE_PIXELS], const layer *l, uint32_t before, uint32_t here, uint32_t after)
+{
+  double bend = least_bend(l, before, here, after);
+  if (is_smooth(&pixels[before]) && is_smooth(&pixels[here]) && is_smooth(&pixels[after]))
+    bend /= sqrt(SMOOTH);
   return bend * bend - NOISE_KNOWN * (pixels[before].variance + 4 * pixels[here].variance + pixels[after].variance);
 }
 
-/* Of each pixel in both directions, where it has two neighbours in the tile. */
-static void measure(const baked_pixel pixels[TILE_PIXELS], const layer *l, double bends[TILE_PIXELS])
+/* Of a pixel in both directions, where it has two neighbours in the tile. */
+static double bends_at(const baked_pixel pixels[TILE_PIXELS], const layer *l, uint32_t i)
 {
-  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
-    bends[i] = 0;
-    for (uint32_t axis = 0; axis < 2; axis++) {
-      uint32_t at = axis ? i / TILE_SIDE : i % TILE_SIDE, step = axis ? TILE_SIDE : 1;
-      if (at == 0 || at == TILE_SIDE - 1)
-        continue;
-      if (is_known(&pixels[i - step]) && is_known(&pixels[i]) && is_known(&pixels[i + step]))
-        bends[i] += squared_bend(pixels, l, i - step, i, i + step);
-    }
+  double sum = 0;
+  for (uint32_t axis = 0; axis < 2; axis++) {
+    uint32_t at = axis ? i / TILE_SIDE : i % TILE_SIDE, step = axis ? TILE_SIDE : 1;
+    if (at > 0 && at < TILE_SIDE - 1 && is_known(&pixels[i - step]) && is_known(&pixels[i + step]))
+      sum += squared_bend(pixels, l, i - step, i, i + step);
   }
+  return sum;
 }
 
 /* The mean of a known pixel and its neighbours in the tile. */
@@ -149,8 +167,9 @@ static int is_in_question(const layer *l, uint32_t place, double aim)
   tile_patch patch = tile_around(place);
   double low = 1, high = 0;
   for (uint32_t k = 0; k < patch.count; k++) {
-    low = fmin(low, l->low[patch.place[k]]);
-    high = fmax(high, l->high[patch.place[k]]);
+    double least = l->low[patch.place[k]], most = l->high[patch.place[k]];
+    low = least < low ? least : low;
+    high = most > high ? most : high;
   }
   return high > aim * aim && low < 1 - aim * aim;
 }
@@ -158,11 +177,13 @@ static int is_in_question(const layer *l, uint32_t place, double aim)
 /* Keeps the largest of what bends at each pixel. */
 static void keep_largest(const baked_pixel pixels[TILE_PIXELS], const layer *l, double aim, double most[TILE_PIXELS])
 {
-  double bends[TILE_PIXELS];
-  measure(pixels, l, bends);
-  for (uint32_t i = 0; i < TILE_PIXELS; i++)
-    if (is_known(&pixels[i]) && is_in_question(l, i, aim))
-      most[i] = fmax(most[i], bends[i] / SQUARED_BENDS);
+  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+    if (!is_known(&pixels[i]))
+      continue;
+    double bends = bends_at(pixels, l, i) / SQUARED_BENDS;
+    if (bends > most[i] && is_in_question(l, i, aim))
+      most[i] = bends;
+  }
 }
 
 static int is_at_border(uint32_t place)
@@ -215,4 +236,32 @@ void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const ne
     if (is_known(&pixels[i]) && is_bent(most, i, least))
       pixels[i].need = need_of(around(pixels, most, i) / least);
   }
+}
+
+/* The mean square of what lines of three pixels bend, in both directions. */
+static double mean_bend(const layer *l, const sparse_grid *grid)
+{
+  double sum = 0;
+  for (uint32_t k = 0; k < grid->side; k++)
+    for (uint32_t i = 1; i + 1 < grid->side; i++) {
+      double across = least_bend(l, sparse_place(grid, i - 1, k), sparse_place(grid, i, k), sparse_place(grid, i + 1, k));
+      double up = least_bend(l, sparse_place(grid, k, i - 1), sparse_place(grid, k, i), sparse_place(grid, k, i + 1));
+      sum += across * across + up * up;
+    }
+  return sum / (grid->side * (grid->side - 2));
+}
+
+int sparse_is_enough(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits, const sparse_grid *grid)
+{
+  double depths[DEPTHS], most = SPARSE_BEND * limits->aim;
+  uint32_t count = choose_depths(pixels, stored, depths);
+  int channels = has_colour(pixels) ? 3 : 1;
+  layer l;
+  for (int c = 0; c < channels; c++)
+    for (uint32_t k = 0; k < count; k++) {
+      fill_layer(pixels, stored, limits, depths[k], c, &l);
+      if (mean_bend(&l, grid) > most * most)
+        return 0;
+    }
+  return 1;
 }

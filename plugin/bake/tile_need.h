@@ -22,6 +22,22 @@ typedef struct {
   double aim;                     /* error, root mean square over a picture */
 } need_limits;
 
+/* Some pixels of a tile, on lines across and up: columns and rows rise from 0 to the last of the pixels that count. */
+#define SPARSE_MOST 8
+typedef struct {
+  uint32_t side;   /* at least 3 */
+  uint8_t x[SPARSE_MOST], y[SPARSE_MOST];
+} sparse_grid;
+
+static inline uint32_t sparse_place(const sparse_grid *grid, uint32_t i, uint32_t j)
+{
+  return grid->y[j] * TILE_SIDE + grid->x[i];
+}
+
+/* Whether what lies between these pixels can be interpolated. The others have no vertices. */
+int sparse_is_enough(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits,
+                     const sparse_grid *grid);
+
 /* Sets `need` of all pixels of a tile from their vertices and variance, as map/tile.h describes it: 0 where interpolation is good
  * enough. */
 void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits);

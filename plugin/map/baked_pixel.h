@@ -8,7 +8,8 @@
 typedef struct {
   size_t first, count;    /* of its vertices */
   int coloured, marked;   /* channels differ; light can grow (then no vertices) */
-  int volume, surface;    /* what its rays have met */
+  int volume, surface;    /* what its rays have met that takes light */
+  int clear;              /* surfaces that take none, as containers of volumes */
   double tolerance;       /* error that its compression was allowed */
   double variance;        /* of its rays' average: the noise that lasts, see noise_lasting; 0 unless `accuracy` wants it */
   unsigned char need;     /* of a finer level, see tile.h */

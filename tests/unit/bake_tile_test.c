@@ -14,7 +14,7 @@
 static wanted_pixels all_wanted;   /* set in main */
 
 static const tile *bake(stage *s, uint32_t x, uint32_t y, bake_scratch *scratch, tile_tally *tally) {
-  bake_job job = {&s->map->host, &s->w, &s->map->projection, &s->map->settings};
+  bake_job job = {&s->map->host, &s->w, &s->map->projection, &s->map->settings, &s->map->light};
   tile_key key = {0, 0, x, y};
   const tile *t = NULL;
   *tally = (tile_tally){0};
@@ -232,7 +232,7 @@ static void batches_are_whole_pixels(void **state) {
     dsm_host host = s.map->host;
     host.trace = count_batches;
     host.pause = NULL;
-    bake_job job = {&host, &b, &s.map->projection, &s.map->settings};
+    bake_job job = {&host, &b, &s.map->projection, &s.map->settings, &s.map->light};
     bake_scratch scratch = {0};
     tile_tally tally = {0};
     const tile *t;

@@ -126,6 +126,25 @@ static void noise_is_forgiven(void **state) {
     if (known) assert_int_equal(largest(), 0);
     else assert_true(is_wanted(largest()));
   }
+}
+
+/* Few pixels are enough for what runs straight, and for what curves a little; not for a step, wherever it lies, in any colour. */
+static void few_pixels_are_enough_without_steps(void **state) {
+  (void)state;
+  const sparse_grid grid = {4, {0, 5, 10, 15}, {0, 5, 10, 15}};
+  for (int kind = 0; kind < 4; ++kind)
+    for (uint32_t edge = 1; edge < TILE_SIDE; ++edge)
+      for (int vertical = 0; vertical < 2; ++vertical) {
+        begin();
+        for (uint32_t k = 0; k < 16; ++k) {
+          uint32_t x = grid.x[k % 4], y = grid.y[k / 4], at = vertical ? y : x, i = sparse_place(&grid, k % 4, k / 4);
+          double straight = 0.9 - 0.02 * x - 0.03 * y, curve = 0.5 + 0.0005 * (x - 7.0) * (x - 7.0) - 0.0005 * (y - 7.0) * (y - 7.0), step = at < edge ? 0.8 : 0.55;
+          put(i, 3, 1, kind == 0 ? straight : kind == 1 ? curve : step);
+          if (kind == 3) stored.data[pixels[i].first + 1].v = (rgb){{0.8, 0.8, step}};
+          pixels[i].coloured = kind == 3;
+        }
+        assert_int_equal(sparse_is_enough(pixels, &stored, &LIMITS, &grid), kind < 2);
+      }
   vertices_free(&stored);
 }
 
@@ -138,6 +157,7 @@ int main(void) {
     cmocka_unit_test(an_edge_at_the_border_wants_more),
     cmocka_unit_test(unknown_pixels),
     cmocka_unit_test(noise_is_forgiven),
+    cmocka_unit_test(few_pixels_are_enough_without_steps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "bake/sparse_tile.h"
+
+#include <math.h>
+
+#include "core/box_outline.h"
+#include "core/compress.h"
+#include "core/rounding.h"
+
+/* Baked pixels along a side, from few to more. */
+static const uint32_t SIDES[] = {4, 8};
+enum { TRIES = sizeof SIDES / sizeof *SIDES };
+
+/* With more casters than that, looking at all their boxes would cost more than it spares. */
+enum { MOST_BOXES = 2000 };
+
+uint32_t casters_above(const bake_job *job, const tile_key *key, uint32_t most)
+{
+  if (!job->light || job->light->caster_count > MOST_BOXES)
+    return most;
+  const face *f = &job->projection->faces[key->face];
+  double size = ldexp(TILE_SIDE, (int)key->level), reach = ldexp(job->settings->filter_width, (int)key->level);
+  rectangle tile = {f->u0 + (key->x * size - reach) * f->pixel_u, f->v0 + (key->y * size - reach) * f->pixel_v,
+                    f->u0 + ((key->x + 1) * size + reach) * f->pixel_u, f->v0 + ((key->y + 1) * size + reach) * f->pixel_v};
+  uint32_t count = 0;
+  for (uint64_t i = 0; i < job->light->caster_count && count < most; i++) {
+    outline seen = OUTLINE_EMPTY;
+    outline_add(&seen, job->projection->origin, &f->axes, job->projection->perspective, &tile, &job->light->casters[i]);
+    count += seen.area.u0 <= seen.area.u1;
+  }
+  return count;
+}
+
+/* The pixels on the face are a rectangle from the tile's first one on. 0: that is too narrow. */
+static int make_grid(const place_list *whole, uint32_t side, sparse_grid *grid)
+{
+  uint32_t last = whole->place[whole->count - 1], width = last % TILE_SIDE, height = last / TILE_SIDE;
+  grid->side = side;
+  for (uint32_t k = 0; k < side; k++) {
+    grid->x[k] = (uint8_t)((k * width + (side - 1) / 2) / (side - 1));
+    grid->y[k] = (uint8_t)((k * height + (side - 1) / 2) / (side - 1));
+  }
+  return width >= 2 * (side - 1) && height >= 2 * (side - 1);
+}
+
+static dsm_result bake_grid(const bake_job *job, bake_scratch *s, const tile_key *key, const sparse_grid *grid, tile_tally *tally)
+{
+  place_list list = {.count = 0};
+  for (uint32_t j = 0; j < grid->side; j++)
+    for (uint32_t i = 0; i < grid->side; i++)
+      list.place[list.count++] = (uint8_t)sparse_place(grid, i, j);
+  return bake_pass(job, s, key, 1, &list, tally);
+}
+
+/* Nothing but volumes, or what holds them. */
+static int is_all_volume(const bake_scratch *s, const sparse_grid *grid)
+{
+  int volume = 0;
+  for (uint32_t j = 0; j < grid->side; j++)
+    for (uint32_t i = 0; i < grid->side; i++) {
+      const baked_pixel *p = &s->pixels[sparse_place(grid, i, j)];
+      if (p->surface || p->marked)
+        return 0;
+      volume |= p->volume || p->clear;
+    }
+  return volume;
+}
+
+/* The interval of a line of baked pixels that holds pixel `at`, and the weight of its far end. */
+static uint32_t interval_of(const uint8_t *line, uint32_t at, double *weight)
+{
+  uint32_t k = 0;
+  while (at > line[k + 1])
+    k++;
+  *weight = (double)(at - line[k]) / (line[k + 1] - line[k]);
+  return k;
+}
+
+/* The average of up to four baked pixels, whose vertices are in s->coarse. */
+static dsm_result fill_pixel(const bake_job *job, bake_scratch *s, const sparse_grid *grid, uint32_t x, uint32_t y)
+{
+  double across, up, weights[4];
+  uint32_t i = interval_of(grid->x, x, &across), j = interval_of(grid->y, y, &up);
+  size_t first[5];
+  uint32_t count = 0;
+  int coloured = 0;
+  s->near_by.count = 0;
+  for (uint32_t q = 0; q < 4; q++) {
+    double weight = (q & 1 ? across : 1 - across) * (q >> 1 ? up : 1 - up);
+    if (weight == 0)
+      continue;
+    const baked_pixel *p = &s->pixels[sparse_place(grid, i + (q & 1), j + (q >> 1))];
+    first[count] = s->near_by.count;
+    weights[count++] = weight;
+    coloured |= p->coloured;
+    for (size_t k = p->first; k < p->first + p->count; k++) {
+      dsm_result result = vertices_push(&s->near_by, s->stored.data[k].z, s->stored.data[k].v);
+      if (result != DSM_OK)
+        return result;
+    }
+  }
+  first[count] = s->near_by.count;
+  average_input in = {s->near_by.data, first, weights, count};
+  s->pixel.average.count = 0;
+  dsm_result result = average_sweep(&in, &s->pixel.sweep, &s->pixel.average);
+  if (result != DSM_OK)
+    return result;
+  double tolerance = finest_tolerance(job->settings);
+  baked_pixel *out = &s->pixels[y * TILE_SIDE + x];
+  *out = (baked_pixel){.first = s->stored.count, .coloured = coloured, .volume = 1, .tolerance = 2 * tolerance};
+  result = compress_minimal_after(s->pixel.average.data, s->pixel.average.count, coloured ? 3 : 1, tolerance,
+                                  rounding_spent(bake_value_bits(job->settings), 1, tolerance), &s->stored);
+  out->count = s->stored.count - out->first;
+  return result;
+}
+
+static int is_baked(const sparse_grid *grid, uint32_t x, uint32_t y)
+{
+  int across = 0, up = 0;
+  for (uint32_t k = 0; k < grid->side; k++) {
+    across |= grid->x[k] == x;
+    up |= grid->y[k] == y;
+  }
+  return across && up;
+}
+
+static dsm_result fill(const bake_job *job, bake_scratch *s, const sparse_grid *grid)
+{
+  dsm_result result = DSM_OK;
+  for (uint32_t y = 0; y <= grid->y[grid->side - 1]; y++)
+    for (uint32_t x = 0; x <= grid->x[grid->side - 1] && result == DSM_OK; x++)
+      if (!is_baked(grid, x, y))
+        result = fill_pixel(job, s, grid, x, y);
+  return result;
+}
+
+static void forget(bake_scratch *s, const sparse_grid *grid)
+{
+  for (uint32_t j = 0; j < grid->side; j++)
+    for (uint32_t i = 0; i < grid->side; i++)
+      s->pixels[sparse_place(grid, i, j)] = (baked_pixel){0};
+  s->stored.count = 0;
+}
+
+dsm_result bake_sparsely(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *whole,
+                         const need_limits *limits, sparse_outcome *outcome, tile_tally *tally)
+{
+  sparse_grid grid;
+  *outcome = SPARSE_NEVER;
+  for (int k = 0; k < TRIES && whole->count > 0 && make_grid(whole, SIDES[k], &grid); k++) {
+    dsm_result result = bake_grid(job, s, key, &grid, tally);
+    if (result != DSM_OK)
+      return result;
+    *outcome = !is_all_volume(s, &grid) ? SPARSE_NEVER : sparse_is_enough(s->pixels, &s->stored, limits, &grid) ? SPARSE_DONE : SPARSE_BENT;
+    if (*outcome == SPARSE_DONE)
+      return fill(job, s, &grid);
+    forget(s, &grid);
+    if (*outcome == SPARSE_NEVER)
+      break;
+  }
+  return DSM_OK;
+}
