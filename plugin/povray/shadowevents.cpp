@@ -101,10 +101,12 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray *rays
 	return story.Tell(offset + ray, sink);
 }
 
-/// Whether rays of one pixel meet the same surfaces, or miss the same.
+/// Whether rays of one pixel meet the same surfaces, of which the first lets light through.
 bool ShadowEvents::AllMeetTheSame(unsigned int begin, unsigned int count)
 {
 	first = hits.Of(begin);
+	if(first.empty() || (first[0].surface == ShadowHits::kOpaque))
+		return false;
 	for(unsigned int i = 1; i < count; i++)
 	{
 		const vector<ShadowHits::Hit>& found = hits.Of(begin + i);
@@ -115,7 +117,7 @@ bool ShadowEvents::AllMeetTheSame(unsigned int begin, unsigned int count)
 			if((found[k].caster != first[k].caster) || (found[k].number != first[k].number) || ((found[k].surface == ShadowHits::kOpaque) != (first[k].surface == ShadowHits::kOpaque)))
 				return false;
 	}
-	return !first.empty() && (first[0].surface != ShadowHits::kOpaque);
+	return true;
 }
 
 /// Reports the rays of one map pixel. What they pass through changes little from one to the next, unless they meet different surfaces;
