@@ -133,6 +133,14 @@ static int is_a_guess(const bake_job *job, uint32_t samples, const event *events
   return samples == 1 && is_automatic(job->settings) && t->c[0] == 0 && t->c[1] == 0 && t->c[2] == 0;
 }
 
+static dsm_result append(const vertices *from, vertices *to)
+{
+  dsm_result result = DSM_OK;
+  for (size_t i = 0; i < from->count && result == DSM_OK; i++)
+    result = vertices_push(to, from->data[i].z, from->data[i].v);
+  return result;
+}
+
 dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sink, const noise_limits *limits,
                       uint32_t first_ray, uint32_t samples, vertices *stored, baked_pixel *pixel, tile_tally *tally)
 {
@@ -158,7 +166,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   pixel->surface = kind.surface;
   pixel->clear = kind.clear;
   pixel->coloured = kind.coloured && !is_grey(&s->average);
-  int channels = pixel->coloured ? 3 : 1;
+  int channels = pixel->coloured ? 3 : 1, compressed = 0;
   const vertices *clean = &s->average;
   tally->vertices_in += s->average.count;
   if (job->settings->accuracy > 0)
@@ -169,7 +177,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
     thin_vertices(&s->average, is_automatic(job->settings) ? s->noise.allowed : NULL, thinning(job->settings));
   if (is_automatic(job->settings)) {
     s->smooth.count = 0;
-    result = smooth_noise(&s->average, &s->noise, channels, limits, &s->relative, &s->smooth);
+    result = smooth_noise(&s->average, &s->noise, channels, limits, &s->relative, &s->smooth, &compressed);
     if (result != DSM_OK)
       return result;
     clean = &s->smooth;
@@ -177,7 +185,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   double tolerance = finest_tolerance(job->settings);
   pixel->tolerance = is_a_guess(job, samples, events) ? noise_ceiling(1) : fmax(pixel->tolerance, tolerance);
   double spent = rounding_spent(bake_value_bits(job->settings), kind.volume, tolerance) + (kind.volume ? spent_on_volume(job->settings) : 0);
-  result = compress_minimal_after(clean->data, clean->count, channels, tolerance, spent, stored);
+  result = compressed ? append(clean, stored) : compress_minimal_after(clean->data, clean->count, channels, tolerance, spent, stored);
   pixel->count = stored->count - pixel->first;
   return result;
 }

@@ -108,10 +108,12 @@ static dsm_result compress_stretch(const vertices *v, const stretch *s, int chan
   return result == DSM_OK && s->first > 0 ? store_near_side(out, begin) : result;
 }
 
-/* Appends one stretch without its noise; both its ends are held, or the first if it never ends. */
+/* Appends one stretch without its noise; both its ends are held, or the first if it never ends. *held: that took vertices of its
+ * own. */
 static dsm_result smooth_stretch(const vertices *v, const stretch *s, int channels, vertices *scratch,
-                                 vertices *out)
+                                 vertices *out, int *held)
 {
+  *held = s->first > 0;
   rgb front = s->first == 0 ? rgb_grey(1) : v->data[s->first].v, end = v->data[s->last].v;
   /* a slope may lead up to here */
   dsm_result result = s->first > 0 ? vertices_push(out, v->data[s->first].z, front) : DSM_OK;
@@ -131,25 +133,29 @@ static dsm_result smooth_stretch(const vertices *v, const stretch *s, int channe
   rgb before = out->count > begin ? out->data[out->count - 1].v : front;
   if (before.c[0] == end.c[0] && before.c[1] == end.c[1] && before.c[2] == end.c[2])
     return out->count > begin ? DSM_OK : vertices_push(out, z, end);
+  *held = 1;
   result = vertices_push(out, z, before);
   return result == DSM_OK ? vertices_push(out, z, end) : result;
 }
 
 dsm_result smooth_noise(const vertices *mean, const noise_profile *profile, int channels,
-                        const noise_limits *limits, vertices *scratch, vertices *out)
+                        const noise_limits *limits, vertices *scratch, vertices *out, int *compressed)
 {
   size_t next = 0;
   stretch s;
+  *compressed = 0;
   while (next < mean->count && find_stretch(mean, profile, limits, next, &s)) {
     for (; next < s.first; next++) {
       dsm_result result = vertices_push(out, mean->data[next].z, mean->data[next].v);
       if (result != DSM_OK)
         return result;
     }
-    dsm_result result = smooth_stretch(mean, &s, channels, scratch, out);
+    int held;
+    dsm_result result = smooth_stretch(mean, &s, channels, scratch, out, &held);
     if (result != DSM_OK)
       return result;
     next = s.last + 1;
+    *compressed = next == mean->count && s.allowed >= limits->least && !held;
   }
   for (; next < mean->count; next++) {
     dsm_result result = vertices_push(out, mean->data[next].z, mean->data[next].v);

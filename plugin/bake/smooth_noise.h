@@ -25,8 +25,9 @@ typedef struct {
 
 /* Appends `mean` to `out`, its noisy stretches simplified: within the root mean square over depth of the
  * stretch's `profile->allowed`, or within `most` where it is thin. Where noise never ends, not beyond what
- * it is at the end. Never grows if the mean does not. `scratch` is overwritten. */
+ * it is at the end. Never grows if the mean does not. `scratch` is overwritten. *compressed: all of it is one such stretch, of which
+ * another compression within `least` would make little less. */
 dsm_result smooth_noise(const vertices *mean, const noise_profile *profile, int channels,
-                        const noise_limits *limits, vertices *scratch, vertices *out);
+                        const noise_limits *limits, vertices *scratch, vertices *out, int *compressed);
 
 #endif

@@ -101,10 +101,12 @@ dsm_result ShadowEvents::ReportRay(const LightSource& light, const dsm_ray *rays
 	return story.Tell(offset + ray, sink);
 }
 
-/// Whether rays of one pixel meet the same surfaces, or miss the same.
+/// Whether rays of one pixel meet the same surfaces, of which the first lets light through.
 bool ShadowEvents::AllMeetTheSame(unsigned int begin, unsigned int count)
 {
 	first = hits.Of(begin);
+	if(first.empty() || (first[0].surface == ShadowHits::kOpaque))
+		return false;
 	for(unsigned int i = 1; i < count; i++)
 	{
 		const vector<ShadowHits::Hit>& found = hits.Of(begin + i);
@@ -115,7 +117,7 @@ bool ShadowEvents::AllMeetTheSame(unsigned int begin, unsigned int count)
 			if((found[k].caster != first[k].caster) || (found[k].number != first[k].number) || ((found[k].surface == ShadowHits::kOpaque) != (first[k].surface == ShadowHits::kOpaque)))
 				return false;
 	}
-	return !first.empty() && (first[0].surface != ShadowHits::kOpaque);
+	return true;
 }
 
 /// Reports the rays of one map pixel. What they pass through changes little from one to the next, unless they meet different surfaces;
@@ -123,20 +125,23 @@ bool ShadowEvents::AllMeetTheSame(unsigned int begin, unsigned int count)
 dsm_result ShadowEvents::ReportPixel(const LightSource& light, const dsm_ray *rays, unsigned int begin, unsigned int count, double tolerance, dsm_sink *sink, unsigned int offset)
 {
 	// of each quarter another quarter: of the pixel's rows and columns, each has one (see sink_pixel_rays)
-	static const unsigned int kQuarter[kFew] = { 0, 2, 1, 3 };
-	const unsigned int step = count / kFew;
-	unsigned int chosen[kFew], followed = 0;
+	static const unsigned int kQuarter[ShadowStory::kFew] = { 0, 2, 1, 3 };
+	const unsigned int step = count / ShadowStory::kFew;
+	const dsm_ray *few[ShadowStory::kFew];
+	unsigned int chosen[ShadowStory::kFew], followed = 0;
 	dsm_result result = DSM_OK;
 
 	Task::CurrentTaskCooperate();
-	bool few = AllMeetTheSame(begin, count), hasMedia = false;
-	for(; (followed < kFew) && few; followed++)
+	const bool same = AllMeetTheSame(begin, count);
+	bool hasMedia = false;
+	for(; (followed < ShadowStory::kFew) && same; followed++)
 	{
-		chosen[followed] = begin + followed * step + kQuarter[followed] * step / kFew;
-		Follow(light, rays[chosen[followed]], hits.Of(chosen[followed]), tolerance, stories[followed]);
+		chosen[followed] = begin + followed * step + kQuarter[followed] * step / ShadowStory::kFew;
+		few[followed] = rays + chosen[followed];
+		Follow(light, *few[followed], hits.Of(chosen[followed]), tolerance, stories[followed]);
 		hasMedia = hasMedia || stories[followed].HasMedia();
 	}
-	few = few && hasMedia && ShadowStory::Agree(stories, kFew, kCertain * max(tolerance, kLeastTolerance));
+	const bool enough = hasMedia && ShadowStory::Agree(stories, ShadowStory::Contrast(few), kCertain * max(tolerance, kLeastTolerance));
 
 	for(unsigned int i = 0; (i < count) && (result == DSM_OK); i++)
 	{
@@ -144,7 +149,7 @@ dsm_result ShadowEvents::ReportPixel(const LightSource& light, const dsm_ray *ra
 
 		if((quarter < followed) && (begin + i == chosen[quarter]))
 			result = stories[quarter].Tell(offset + begin + i, sink);
-		else if(few)
+		else if(enough)
 			result = ShadowPlugin::Api().sink_spare(sink, offset + begin + i);
 		else
 			result = ReportRay(light, rays, begin + i, tolerance, sink, offset);
@@ -334,6 +339,9 @@ double ShadowEvents::PassMedia(const dsm_ray& ray, double front, double back, do
 				media.Add(*medium);
 		}
 	}
+	if(media.Empty())
+		return visible;
+	story.Media();
 	return media.Integrate(ray, front, back, visible, tolerance, slackness, story);
 }
 

@@ -24,9 +24,6 @@ class ShadowEvents : public Trace
 		POV_ULONG Shaded() const { return shaded; }              ///< surfaces
 		POV_ULONG Evaluations() const { return media.evaluations; } ///< of densities
 	private:
-		/// Rays of a map pixel that stand for all of it where they agree.
-		enum { kFew = 4 };
-
 		const ShadowCasters& casters;
 		CooperateFunctor noCooperate;
 		MediaFunctor noMedia;
@@ -43,7 +40,7 @@ class ShadowEvents : public Trace
 		Ray shade;
 		vector<Interior *> inside;
 		ShadowMedia media;
-		ShadowStory story, stories[kFew];
+		ShadowStory story, stories[ShadowStory::kFew];
 		vector<ShadowHits::Hit> first; ///< those of a pixel's first ray
 
 		void FindContainers(const LightSource& light);

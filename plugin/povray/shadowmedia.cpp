@@ -356,11 +356,23 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 		double cubic[5], means[4][3];
 
 		Quarters(a, b, slopeA, slopeB, cubic);
-		mapped[i]->Mapped()->Transfer().Means<kChannels>(cubic, 4, means);
+		const ShadowTransfer& transfer = mapped[i]->Mapped()->Transfer();
+		const int entry = transfer.Straight(*std::min_element(cubic, cubic + 5), *std::max_element(cubic, cubic + 5), 0);
+		if(entry != ShadowTransfer::kBent) // the means are in the middle
+		{
+			for(int q = 0; q < 4; q++)
+				for(int k = 0; k < kChannels; k++)
+				{
+					curved[q][k] += transfer.On(entry, 0.5 * (cubic[q] + cubic[q + 1]), k) * scale[k];
+					straight[q][k] += transfer.On(entry, a + (b - a) * (q + 0.5) / 4.0, k) * scale[k];
+				}
+			continue;
+		}
+		transfer.Means<kChannels>(cubic, 4, means);
 		for(int q = 0; q < 4; q++)
 			for(int k = 0; k < kChannels; k++)
 				curved[q][k] += means[q][k] * scale[k];
-		mapped[i]->Mapped()->Transfer().Means<kChannels>(line, 4, means);
+		transfer.Means<kChannels>(line, 4, means);
 		for(int q = 0; q < 4; q++)
 			for(int k = 0; k < kChannels; k++)
 				straight[q][k] += means[q][k] * scale[k];

@@ -5,6 +5,7 @@
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
+#include "backend/math/vector.h"
 #include "backend/shadow/shadowstory.h"
 
 // this must be the last file included
@@ -19,8 +20,11 @@ namespace
 /// Depths at which rays are compared.
 const int kDepths = 8;
 
-/// Most rays that are compared.
-const int kMostRays = 4;
+/// Twice the area of a triangle, as the light sees it.
+double Area(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& direction)
+{
+	return dot(cross(b - a, c - a), direction);
+}
 
 }
 
@@ -77,12 +81,31 @@ void ShadowStory::Follow(const double depths[], double (*visible)[3]) const
 	}
 }
 
-bool ShadowStory::Agree(const ShadowStory stories[], int count, double error)
+/// Values that change linearly across the light's view cancel out if each is weighed by the area of the triangle of the other three
+/// rays, with the sign that makes the weights of a square's corners + - + -.
+ShadowStory::Contrast::Contrast(const dsm_ray *const rays[kFew])
 {
-	double visible[kMostRays][kDepths][3], depths[kDepths];
+	const Vector3d direction(rays[0]->direction);
+	Vector3d at[kFew];
+	double squares = 0.0;
+
+	for(int i = 0; i < kFew; i++) // the rays of a point light share their origin, those of a parallel one the direction
+		at[i] = Vector3d(rays[i]->origin) - Vector3d(rays[0]->origin) + Vector3d(rays[i]->direction);
+	for(int i = 0; i < kFew; i++)
+	{
+		weight[i] = ((i & 1) ? -1.0 : 1.0) * Area(at[(i == 0) ? 1 : 0], at[(i <= 1) ? 2 : 1], at[(i <= 2) ? 3 : 2], direction);
+		squares += weight[i] * weight[i];
+	}
+	for(int i = 0; i < kFew; i++)
+		weight[i] /= sqrt(squares); // NaN, if all are on one line: then nothing agrees
+}
+
+bool ShadowStory::Agree(const ShadowStory stories[], const Contrast& contrast, double error)
+{
+	double visible[kFew][kDepths][3], depths[kDepths];
 	double begin = std::numeric_limits<double>::max(), end = begin;
 
-	for(int i = 0; i < count; i++)
+	for(int i = 0; i < kFew; i++)
 	{
 		if(stories[i].marked || stories[i].overlapping || stories[i].events.empty())
 			return false;
@@ -91,20 +114,18 @@ bool ShadowStory::Agree(const ShadowStory stories[], int count, double error)
 	}
 	for(int d = 0; d < kDepths; d++)
 		depths[d] = begin + (end - begin) * ((d + 1.0) / kDepths - 1.0e-6); // in front of what ends there
-	for(int i = 0; i < count; i++)
+	for(int i = 0; i < kFew; i++)
 		stories[i].Follow(depths, visible[i]);
 
-	const double most = 2.0 * count * (count - 1.0) * error * error;
+	// a ray's own deviation adds this share of itself to the mean's
+	const double most = sqrt(double(kFew)) * error;
 	for(int d = 0; d < kDepths; d++)
 		for(int k = 0; k < 3; k++)
 		{
-			double squares = 0.0;
-			for(int i = 0; i + 1 < count; i++)
-			{
-				const double change = visible[i + 1][d][k] - visible[i][d][k];
-				squares += change * change;
-			}
-			if(squares > most)
+			double deviation = 0.0;
+			for(int i = 0; i < kFew; i++)
+				deviation += contrast.weight[i] * visible[i][d][k];
+			if(!(fabs(deviation) <= most))
 				return false;
 		}
 	return true;

@@ -75,18 +75,6 @@ DblRGBColour ShadowTransfer::At(double value) const
 	return last.colour + (next->colour - last.colour) * ((value - last.value) / (next->value - last.value));
 }
 
-/// The last entry that is not above a value, or -1. Looks near `from` first: the next value is seldom far.
-inline int ShadowTransfer::Find(double value, int from) const
-{
-	const int count = entries.size();
-
-	while((from >= 0) && (value < entries[from].value))
-		from--;
-	while((from + 1 < count) && (value >= entries[from + 1].value))
-		from++;
-	return from;
-}
-
 inline double ShadowTransfer::Integral(int entry, double value, int channel) const
 {
 	if(entry < 0)

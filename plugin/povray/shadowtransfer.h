@@ -25,6 +25,21 @@ class ShadowTransfer
 		/// The mean over all values between two neighbours, for `count` pairs: means[i] is of values[i] and values[i + 1].
 		/// Of the first `kChannels` channels: one is enough for grey.
 		template<int kChannels> void Means(const double *values, int count, double (*means)[3]) const;
+		/// @return     the entry from which on, or -1 in front of which, the map is one straight line over all values from `low` to
+		///             `high`; kBent if it is not
+		int Straight(double low, double high, int from) const
+		{
+			const int entry = Find(low, from);
+			return ((entry + 1 == (int)entries.size()) || (high <= entries[entry + 1].value)) ? entry : int(kBent);
+		}
+		enum { kBent = -2 };
+		/// On the straight line of such an entry.
+		double On(int entry, double value, int channel) const
+		{
+			const Entry& on = entries[max(entry, 0)];
+			return on.colour[channel] + ((entry < 0) ? 0.0 : (value - on.value) * on.slope[channel]);
+		}
+
 		/// The least and the most of each channel over all values from `low` to `high`.
 		void Range(double low, double high, DblRGBColour& least, DblRGBColour& most) const;
 
@@ -43,7 +58,17 @@ class ShadowTransfer
 		vector<Entry> entries;
 		bool grey;
 
-		int Find(double value, int from) const;
+		/// The last entry that is not above a value, or -1. Looks near `from` first: the next value is seldom far.
+		int Find(double value, int from) const
+		{
+			const int count = entries.size();
+
+			while((from >= 0) && (value < entries[from].value))
+				from--;
+			while((from + 1 < count) && (value >= entries[from + 1].value))
+				from++;
+			return from;
+		}
 		double Integral(int entry, double value, int channel) const;
 };
 

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "bake/smooth_noise.h"
+#include "core/compress.h"
 #include "random.h"
 
 enum { STEPS = 16, MOST = 4 * STEPS };
@@ -39,8 +40,9 @@ static void check(rng *r, double level, double end, double noise) {
   staircase(r, level, end, &mean, allowed, noise);
   noise_profile profile = {.allowed = allowed};
   noise_limits limits = {0.002, 0.0625, 0, 0};
-  assert_int_equal(smooth_noise(&mean, &profile, 1, &limits, &scratch, &out), DSM_OK);
-  assert_seeded(r, out.count <= mean.count + 2);
+  int compressed;
+  assert_int_equal(smooth_noise(&mean, &profile, 1, &limits, &scratch, &out, &compressed), DSM_OK);
+  assert_seeded(r, out.count <= mean.count + 2 && !compressed);
   for (double z = 1; z < 8; z += 1.0 / 1024) {   /* far enough from the calm steps */
     double want = vertices_at(mean.data, mean.count, z).c[0], got = vertices_at(out.data, out.count, z).c[0];
     int noisy = z >= 3 && want < level && want > end;
@@ -66,9 +68,36 @@ static void calm_parts_stay(void **state) {
   }
 }
 
+/* A surface that all rays end at, each at its own depth: nothing is left to compress. */
+static void one_stretch_is_compressed_already(void **state) {
+  (void)state;
+  for (uint64_t seed = 0; seed < most_cases(500); ++seed) {
+    rng r = rng_seeded(seed);
+    vertices mean = {0}, scratch = {0}, out = {0}, again = {0};
+    double allowed[MOST], z = 3, noise = rng_between(&r, 0.01, 0.06);
+    int compressed;
+    for (int i = 0; i < STEPS; ++i, z += rng_between(&r, 0.3, 1.7) / STEPS) {
+      allowed[mean.count] = i ? noise : 0;
+      vertices_push(&mean, z, rgb_grey(1 - (double)i / STEPS));
+      allowed[mean.count] = i + 1 < STEPS ? noise : 0;
+      vertices_push(&mean, z, rgb_grey(1 - (i + 1.0) / STEPS));
+    }
+    noise_profile profile = {.allowed = allowed};
+    noise_limits limits = {0.002, 0.0625, 0, 0};
+    assert_int_equal(smooth_noise(&mean, &profile, 1, &limits, &scratch, &out, &compressed), DSM_OK);
+    assert_int_equal(compress_minimal(mean.data, mean.count, 1, noise, &again), DSM_OK);
+    assert_seeded(&r, compressed && out.count == again.count && out.data[out.count - 1].v.c[0] == 0);
+    vertices_free(&mean);
+    vertices_free(&scratch);
+    vertices_free(&out);
+    vertices_free(&again);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(calm_parts_stay),
+    cmocka_unit_test(one_stretch_is_compressed_already),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
