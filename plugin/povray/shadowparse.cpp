@@ -10,6 +10,7 @@
 #include "backend/parser/parse.h"
 #include "backend/scene/objects.h"
 #include "backend/scene/scene.h"
+#include "backend/shadow/shadowpermission.h"
 #include "backend/shadow/shadowsettings.h"
 
 // this must be the last file included
@@ -169,15 +170,17 @@ void Parser::Find_Shadow_Files(ShadowSettings& settings)
 		if(!found.empty())
 			path = found;
 		settings.loadPath = UCS2toASCIIString(path);
-		if(POV_ALLOW_FILE_READ(path.c_str(), POV_File_Unknown) == false)
-			Error("IO Restrictions prohibit read access to '%s'", settings.loadPath.c_str());
+		const string forbidding(ShadowFileForbiddenBy(settings.loadPath, false));
+		if(!forbidding.empty() || (POV_ALLOW_FILE_READ(path.c_str(), POV_File_Unknown) == false))
+			Error("IO Restrictions prohibit read access to '%s': see %s.", settings.loadPath.c_str(), forbidding.empty() ? "povray.conf" : forbidding.c_str());
 	}
 
 	if(!save.empty())
 	{
 		settings.savePath = save;
-		if(POV_ALLOW_FILE_WRITE(ASCIItoUCS2String(save.c_str()).c_str(), POV_File_Unknown) == false)
-			Error("IO Restrictions prohibit write access to '%s'", save.c_str());
+		const string forbidding(ShadowFileForbiddenBy(save, true));
+		if(!forbidding.empty() || (POV_ALLOW_FILE_WRITE(ASCIItoUCS2String(save.c_str()).c_str(), POV_File_Unknown) == false))
+			Error("IO Restrictions prohibit write access to '%s': see %s.", save.c_str(), forbidding.empty() ? "povray.conf" : forbidding.c_str());
 	}
 }
 

@@ -81,8 +81,9 @@ static double error_of(const shape *shapes, int count, const char *const *words,
   stage s;
   stage_open(&s, shapes, count, sun(), words);
   rng r = rng_seeded(1234);
+  const int points = UNLESS_SLOW(POINTS, 300);
   double squares = 0;
-  for (int i = 0; i < POINTS; ++i) {
+  for (int i = 0; i < points; ++i) {
     double x = rng_between(&r, -2, 2), y = rng_between(&r, -2, 2);
     for (int c = 0; c < 3; c += 2) {
       double e = pixel_of(&s, x, y, c) - truth(shapes, count, x, y, c);
@@ -93,7 +94,7 @@ static double error_of(const shape *shapes, int count, const char *const *words,
   dsm_api.statistics(s.map, &got);
   stage_close(&s);
   *rays = got.rays;
-  return sqrt(squares / POINTS);
+  return sqrt(squares / points);
 }
 
 static void it_is_as_accurate_as_it_says(void **state) {
@@ -105,7 +106,7 @@ static void it_is_as_accurate_as_it_says(void **state) {
     int count = make_scene(k, shapes);
     double error = error_of(shapes, count, WORDS("resolution 512", "samples 4"), &even);
     print_message("scene %d: 512 x 4 %.5f from %llu rays\n", k, error, (unsigned long long)even);
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < UNLESS_SLOW(3, 1); ++i) {
       error = error_of(shapes, count, WORDS(aims[i].word), &rays);
       print_message("  %s: %.5f from %llu rays\n", aims[i].word, error, (unsigned long long)rays);
       assert_true(error <= aims[i].aim);
@@ -125,7 +126,7 @@ static void no_seams(void **state) {
     stage_open(&s, shapes, count, sun(), WORDS("accuracy 0.01"));
     rng r = rng_seeded(5);
     double step = 0.004 * SIDE, most = 0;
-    for (int line = 0; line < 12; ++line) {
+    for (int line = 0; line < UNLESS_SLOW(12, 2); ++line) {
       double x = rng_between(&r, -1.8, 1), y = rng_between(&r, -1.8, 1.8), before = -1;
       for (int i = 0; i < 3000; ++i, x += step) {
         double now = light_of(&s, receiver_at(x, y), 0);
@@ -170,7 +171,7 @@ static void nothing_is_missing(void **state) {
     stage s;
     stage_open(&s, shapes, count, lights[k], WORDS("accuracy 0.03", "resolution 1000"));
     rng r = rng_seeded((uint64_t)k);
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < (int)most_cases(3000); ++i) {
       double x = rng_between(&r, -3, 3), y = rng_between(&r, -3, 3), z = rng_between(&r, 1, 9), rgb[3];
       dsm_receiver at = in_air(x, y, z);
       at.has_footprint = i % 2;

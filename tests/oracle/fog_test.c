@@ -33,9 +33,9 @@ static void check_parallel(double thick, double growth, const char *tolerance_wo
     double d = DEPTHS[k];
     shape fog = fog_at(d, thick, growth);
     stage s;
-    stage_open(&s, &fog, 1, parallel_at(0, 0, 0, 0, 0, 1), WORDS("resolution 24", tolerance_word));
+    stage_open(&s, &fog, 1, parallel_at(0, 0, 0, 0, 0, 1), WORDS("resolution 24", UNLESS_SLOW("samples 16", "samples 1"), tolerance_word));
     rng r = rng_seeded(k);
-    for (int i = 0; i < 500; ++i) {
+    for (uint64_t i = 0; i < most_cases(500); ++i) {
       double to[3] = {d * rng_between(&r, -0.9, 0.9), d * rng_between(&r, -0.9, 0.9), d * rng_between(&r, 0.9, 2.2)};
       double from[3] = {to[0], to[1], 0};
       for (int c = 0; c < 3; ++c) {
@@ -70,9 +70,9 @@ static void perspective(void **state) {
     double d = DEPTHS[k], origin[3] = {0, 0, 0};
     shape fog = fog_at(d, 2, 1);
     stage s;
-    stage_open(&s, &fog, 1, spot_at(0, 0, 0, 0, 0, 1, 20), WORDS("resolution 256", "tolerance 0.001"));
+    stage_open(&s, &fog, 1, spot_at(0, 0, 0, 0, 0, 1, 20), WORDS("resolution 256", UNLESS_SLOW("samples 16", "samples 4"), "tolerance 0.001"));
     rng r = rng_seeded(k);
-    for (int i = 0; i < 300; ++i) {
+    for (uint64_t i = 0; i < most_cases(300); ++i) {
       double z = d * rng_between(&r, 0.9, 2.2), to[3] = {0.3 * z * rng_between(&r, -1, 1), 0.3 * z * rng_between(&r, -1, 1), z};
       for (int c = 0; c < 3; ++c) {
         double error = light_of(&s, in_air(to[0], to[1], to[2]), c) - truth(&fog, origin, to, c);

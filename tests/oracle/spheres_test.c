@@ -17,7 +17,7 @@ static void edge_position(void **state) {
   stage s;
   stage_open(&s, &ball, 1, parallel_at(0, 0, 0, 0, 0, 1), WORDS("resolution 258", "samples 64"));
   double pixel = 2.0 / 256;
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < 60; k += UNLESS_SLOW(1, 12)) {
     double angle = 2 * PI * k / 60, sum = 0;
     for (int i = 0; i < 200; ++i) {   /* the integral of light over radii 0.9 … 1.1 */
       double r = 0.9 + 0.2 * (i + 0.5) / 200;
@@ -104,7 +104,7 @@ static void no_acne_and_no_leak(void **state) {
   (void)state;
   static const double at[3] = {0.1, 0.2, 5}, low[3] = {3, 2.5, 2.9}, far[3] = {700, -300, 900};
   static const char *const filters[] = {"filter box", "filter triangle", "filter gaussian 3"};
-  for (int f = 0; f < 3; ++f) {
+  for (int f = 0; f < UNLESS_SLOW(3, 1); ++f) {
     dsm_light parallel = parallel_at(1, 2, -3, -0.1, 0.2, 1), spot = spot_at(0, 0, 0, 0, 0, 1, 25), point = point_at(0, 0, 0);
     self_shadow(&parallel, at, 1, "resolution 128", filters[f]);
     self_shadow(&spot, at, 1, "resolution 128", filters[f]);
@@ -117,7 +117,7 @@ static void no_acne_and_no_leak(void **state) {
 /* The room's light: a sphere at any angle from it, over all six faces. */
 static void no_acne_in_a_cube(void **state) {
   (void)state;
-  for (uint64_t seed = 0; seed < 6; ++seed) {
+  for (uint64_t seed = 0; seed < UNLESS_SLOW(6u, 1u); ++seed) {
     rng r = rng_seeded(seed);
     shape balls[14];
     for (int i = 0; i < 14; ++i) {
@@ -131,7 +131,7 @@ static void no_acne_in_a_cube(void **state) {
     }
     stage s;
     stage_open(&s, balls, 14, point_at(0, 0, 0), WORDS("resolution 256"));
-    for (int k = 0; k < 3000; ++k) {
+    for (int k = 0; k < (int)most_cases(3000); ++k) {
       const shape *ball = &balls[rng_below(&r, 14)];
       double n[3], size = 0, cosine = 0, distance = 0;
       dsm_receiver on = {.plane_count = 1};
