@@ -2,11 +2,12 @@
 /*
  * How far the numbers of stored vertices may be rounded.
  *
- *   Values    in as few bits as keep the rounding within a 24th of the tolerance, for which compression leaves room.
- *             More rounding would cost more in vertices than it spares in bits.
+ *   Values    in as few bits as keep the rounding within a 15th of the tolerance, for which compression leaves room.
+ *             More rounding would cost more in vertices than it spares in bits (measured: hair).
  *   Depths    to multiples of a quantum. A pixel has seen all that lies within its own width, so where along its
- *             rays a surface was need not be known better by far: quanta take up to four tolerances of the pixel's width, and
- *             at most a 16th of it. Depths move away from the light only, by less than a quantum, so no surface comes to
+ *             rays a surface was need not be known better by far: quanta take up to 16 tolerances of the pixel's width, and at
+ *             most a 16th of it; but 4 where values have all their bits, as the tolerance asked for is finer than what rays tell.
+ *             Depths move away from the light only, by less than a quantum, so no surface comes to
  *             shadow itself. Where there are volumes, which dim at any depth, quanta are so small that moving the
  *             fastest fall changes visibility by no more than a 16th of the tolerance; for that, too, compression leaves room.
  *
@@ -18,7 +19,7 @@
 #include "core/projection.h"
 #include "core/visibility.h"
 
-static const double ROUNDING_OF_VALUES = 1.0 / 24, ROUNDING_OF_DEPTHS = 1.0 / 16;   /* of the tolerance */
+static const double ROUNDING_OF_VALUES = 1.0 / 15, ROUNDING_OF_DEPTHS = 1.0 / 16;   /* of the tolerance */
 
 /* Of one tile. */
 typedef struct {
@@ -58,7 +59,7 @@ static inline rounding rounding_for(const projection *p, uint32_t face_index, ui
 {
   const face *f = &p->faces[face_index];
   double pixel = (double)(1u << level) * (f->pixel_u < f->pixel_v ? f->pixel_u : f->pixel_v);
-  double share = tolerance < 1.0 / 64 ? 4 * tolerance : 1.0 / 16;
+  double tolerances = value_bits < VALUE_BITS ? 16 : 4, share = tolerances * tolerance < 1.0 / 16 ? tolerances * tolerance : 1.0 / 16;
   return (rounding){value_bits, ROUNDING_OF_DEPTHS * tolerance, share * pixel, p->perspective};
 }
 

@@ -148,7 +148,8 @@ static tile *pack_at(const baked_pixel pixels[TILE_PIXELS], const vertices *stor
   return tile_compact(t);
 }
 
-/* With the largest quantum if that makes it a tile of deltas; in absolute records, finer ones cost nothing. */
+/* With the largest quantum if that makes it a tile of deltas; in absolute records, finer ones cost nothing. Where values are told as well
+ * as can be, as a tolerance is asked for that is finer than the rays tell, depths are, too, as far as that costs nothing. */
 static tile *pack_best(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, tile_plan *plan)
 {
   depth_scale scale = {INFINITY, 0};
@@ -158,7 +159,7 @@ static tile *pack_best(const baked_pixel pixels[TILE_PIXELS], const vertices *st
     return pack_at(pixels, stored, &scale, rule->value_bits, plan);
   most = most_of(pixels, stored, rule, scale.near_depth);
   least = least_quantum(most, rule->value_bits, far_depth - scale.near_depth);
-  scale.quantum = most > 0 ? ldexp(1, ilogb(most)) : 0;
+  scale.quantum = most > 0 && rule->value_bits < VALUE_BITS ? ldexp(1, ilogb(most)) : least;
   tile *t = pack_at(pixels, stored, &scale, rule->value_bits, plan);
   if (!t || scale.quantum == least || codes_are_deltas(&t->codes))
     return t;
