@@ -8,6 +8,15 @@ static const double PIXEL = 1.0 / 12;   /* variance of a pixel of the finest lev
 /* Of footprint_scaled: the coarser level has taken over when the area has grown by three quarters. */
 static const double BLEND = 4;
 
+/* The error that an edge leaves in an image pixel goes with the 3/2 power of a map pixel's width. COARSER is measured, with 3 x 3 camera
+ * rays in an image pixel. */
+static const double COARSER = 1020, MOST_COARSER = 16;
+
+double footprint_coarser(double accuracy)
+{
+  return fmin(MOST_COARSER, COARSER * pow(accuracy, 4.0 / 3));
+}
+
 void spread_add(spread *sum, const projection *p, const projected *at, const double sides[2][3])
 {
   const face *f = &p->faces[at->face];

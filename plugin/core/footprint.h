@@ -47,6 +47,9 @@ footprint footprint_of(const spread *region, uint32_t most, uint32_t probes);
  * levels are baked for themselves, both cost. */
 footprint footprint_scaled(footprint f, double times, uint32_t most);
 
+/* How many times the area the pixels that are read may have where the error aimed at is so large, 0 < accuracy < 0.5. */
+double footprint_coarser(double accuracy);
+
 /* Pixels of the finest level beyond which a footprint with these limits reads nothing. */
 static inline double footprint_reach(uint32_t most, int stretched)
 {

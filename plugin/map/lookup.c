@@ -8,12 +8,9 @@
  * a smaller map would do. */
 enum { FOOTPRINT_LEVEL = 5 };
 
-/* With `accuracy` each level that is read costs rays of its own. So long footprints are read coarser, and all of them with pixels of
- * COARSER * accuracy^(4/3) times the area, at most: the error that an edge leaves in an image pixel goes with the 3/2 power of a map
- * pixel's width. COARSER is measured, with 3 x 3 camera rays in an image pixel. */
+/* With `accuracy` each level that is read costs rays of its own. So long footprints are read coarser, and all of them with coarser pixels. */
 enum { REFINED_PROBES = 4,
        BLIND_LEVELS = 2 };   /* finer than the first, at most, for points without a footprint: media, and what is seen in mirrors */
-static const double COARSER = 1020, MOST_COARSER = 16;
 
 /* Where so much is lost by all pixels together, those that are blind are not believed. */
 static const double SHADOWED = 0.02;
@@ -69,8 +66,7 @@ static footprint choose(const view *v, int has_footprint)
   if (map->first_level == 0)
     return footprint_of(&region, most, alone && has_footprint ? FOOTPRINT_PROBES : 1);
   footprint f = footprint_of(&region, most, alone && has_footprint ? REFINED_PROBES : 1);
-  double times = has_footprint ? fmin(MOST_COARSER, COARSER * pow(map->settings.accuracy, 4.0 / 3)) : 1;
-  f = footprint_scaled(f, times, most);
+  f = footprint_scaled(f, has_footprint ? map->coarser : 1, most);
   if (!has_footprint && f.level + BLIND_LEVELS < map->first_level)
     f = (footprint){map->first_level - BLIND_LEVELS, 0, 1, 0, 0};
   return f;

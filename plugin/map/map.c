@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/face_fit.h"
+#include "core/footprint.h"
 #include "map/worker.h"
 
 /* A filter's support is enlarged by this before the receiver's plane is searched for its nearest depth:
@@ -112,6 +113,7 @@ dsm_result map_create_framed(const dsm_host *host, const dsm_light *light, const
   map->blur = blur_pixels(&map->settings);
   map->blur_level = blur_level(&map->settings);
   map->first_level = first_level(&map->settings);
+  map->coarser = footprint_coarser(map->settings.accuracy);
   map->projection = *faces;
   if (tile_store_create(&map->store, &map->projection, (uint64_t)(map->settings.cache * MEGABYTE)) != DSM_OK) {
     free(map);

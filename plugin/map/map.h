@@ -36,6 +36,7 @@ struct dsm_map {
   double blur;             /* width of the look-up's own filter, map pixels */
   uint32_t blur_level;     /* the coarsest level that it needs */
   uint32_t first_level;    /* this level and all finer ones are baked, each tile for itself; coarser ones are averages */
+  double coarser;          /* with `accuracy`: see footprint_coarser */
   tile_store store;
   tile_source *source;     /* NULL: tiles are baked; set before the first look-up */
   map_saving *saving;      /* NULL: the map is not going to be saved */

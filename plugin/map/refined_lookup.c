@@ -4,9 +4,29 @@
 /* From the first places where a finer level counts, NEED_SHARE, to those where all of it does. */
 static const double NEED_FADES = 0.25;
 
-/* How much the place wants a finer level than this one, from 0 to 1: interpolated, so that no seam shows where levels meet. Both levels
- * count while the share of pixels that want more grows from NEED_SHARE on, and while the error is less than an octave above what is let
- * pass. */
+/* What of the pixels around a place want a finer level, weighted. */
+typedef struct { double octaves, share; int always; } wish;
+
+static void add_wish(wish *sum, const tile *t, uint32_t x, uint32_t y, double weight)
+{
+  uint32_t need = tile_need_at(t, y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE);
+  if (need == 0)
+    return;
+  sum->always |= need == NEED_ALWAYS;
+  sum->octaves += weight * (need - 1) / NEED_OCTAVE;
+  sum->share += weight;
+}
+
+/* Both levels count while the share of pixels that want more grows from NEED_SHARE on, and while the error is less than an octave above
+ * what is let pass. */
+static double need_of(const wish *w)
+{
+  if (w->always)
+    return 1;
+  return w->share > NEED_SHARE ? fmin(1, (w->share - NEED_SHARE) / NEED_FADES) * fmin(1, w->octaves / w->share) : 0;
+}
+
+/* How much the place wants a finer level than this one, from 0 to 1: interpolated, so that no seam shows where levels meet. */
 static dsm_result need_at(view *v, uint32_t level, double x, double y, double *need)
 {
   const face *f = &v->worker->map->projection.faces[v->at->face];
@@ -17,27 +37,23 @@ static dsm_result need_at(view *v, uint32_t level, double x, double y, double *n
   int32_t i = round_down(x), j = round_down(y);
   double across = x - i, up = y - j;
   const double weight[4] = {(1 - across) * (1 - up), across * (1 - up), (1 - across) * up, across * up};
-  double octaves = 0, share = 0;
-  *need = 0;
+  tile_key last = {v->at->face, level, UINT32_MAX, UINT32_MAX};
+  const tile *t = NULL;
+  wish sum = {0, 0, 0};
   for (uint32_t k = 0; k < 4; k++) {
     uint32_t px = (uint32_t)i + (k & 1), py = (uint32_t)j + (k >> 1);
     if (px >= width || py >= height || weight[k] == 0)
       continue;
     tile_key key = {v->at->face, level, px / TILE_SIDE, py / TILE_SIDE};
-    const tile *t;
-    dsm_result result = worker_tile(v->worker, &key, &t);
-    if (result != DSM_OK)
-      return result;
-    uint32_t n = tile_need_at(t, py % TILE_SIDE * TILE_SIDE + px % TILE_SIDE);
-    if (n == NEED_ALWAYS) {
-      *need = 1;
-      return DSM_OK;
+    if (key.x != last.x || key.y != last.y) {
+      dsm_result result = worker_tile(v->worker, &key, &t);
+      if (result != DSM_OK)
+        return result;
+      last = key;
     }
-    octaves += weight[k] * (n > 0 ? n - 1 : 0) / NEED_OCTAVE;
-    share += n > 0 ? weight[k] : 0;
+    add_wish(&sum, t, px, py, weight[k]);
   }
-  if (share > NEED_SHARE)
-    *need = fmin(1, (share - NEED_SHARE) / NEED_FADES) * fmin(1, octaves / share);
+  *need = need_of(&sum);
   return DSM_OK;
 }
 
