@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Casters that no number describes: infinite absorption, and absorption, densities and colours that are infinite or not a number.
-// Their shadows are black, or as ray-traced; no picture has a number that is none, and no program falls over.
+// Casters that no number describes: absorption, densities, colours and shapes that are infinite or not a number.
+// Their shadows are those of rays; no picture has a number that is none, and no program falls over.
 // Truth: ray-traced. The casters themselves are not seen.
 #version 3.7;
 global_settings { assumed_gamma 1 }
@@ -31,5 +31,20 @@ light_source {
 #case (2)
   sphere { <-1, 1, 0>, 0.5 no_image pigment { rgbt Nothing } }
   sphere { <1, 1, 0>, 0.5 hollow no_image pigment { rgbt 1 } interior { fade_distance 1e-300 fade_power 1e9 } }
+#break
+#case (3)
+  sphere { Nothing*x, 1 }
+  sphere { 0, Nothing }
+  triangle { x, y, Nothing*z }
+  blob { threshold 0.5 sphere { 0, 1, Nothing } }
+  cylinder { 0, Endless*y, 0.1 }
+  mesh { triangle { -x, y, z } triangle { x, y, Endless*z } }
+  sphere { 0, 1 translate 1e200*x pigment { rgbt 1 } }
+  sphere { <1, 1, 0>, 0.5 no_image }
+#break
+#case (4)
+  #declare Undefined = density { function { ln(x - 100) } color_map { [0 rgb 1] [1 rgb 3] } }
+  Ball(<-1, 1, 0>, 1, Undefined)
+  sphere { <1, 1, 0>, 0.5 no_image pigment { function { sqrt(x - 100) } color_map { [0 rgbt 0.5] [1 rgbt 1] } } }
 #break
 #end
