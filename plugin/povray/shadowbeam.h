@@ -32,7 +32,7 @@ class ShadowBeam
 		void Shorten(unsigned int slot, double depth);
 
 		/// A box's place in the beam.
-		/// @return     false if no ray meets it, or all end before
+		/// @return     false if no ray meets it, or all end before; `rect` says nothing then
 		bool Meets(const float low[3], const float high[3], ShadowRect& rect) const;
 
 		/// Whether all rays in the rectangle end before its nearness. May say no where they do.

@@ -90,7 +90,8 @@ double ShadowDensity::Value(const VECTOR point, TraceThreadData *thread) const
 	VECTOR at;
 
 	Warp_EPoint(at, point, pigment);
-	return Evaluate_TPat(pigment, at, NULL, NULL, thread);
+	const double value = Evaluate_TPat(pigment, at, NULL, NULL, thread);
+	return (value == value) ? value : 0.0; // of what is no number, POV-Ray takes the first colour
 }
 
 void ShadowDensity::Place(const dsm_ray& ray, Line& line) const

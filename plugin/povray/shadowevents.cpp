@@ -234,7 +234,9 @@ void ShadowEvents::Follow(const LightSource& light, const dsm_ray& ray, const ve
 		}
 		story.Surface(hit.depth, colour);
 
-		visible *= max(colour[0], max(colour[1], colour[2]));
+		// light that grows is traced, and the library drops colours that are no numbers
+		const double most = max(colour[0], max(colour[1], colour[2]));
+		visible *= (most < 1.0) ? most : 1.0;
 		if(visible <= 0.0)
 			break;
 		if(!casters.HasVolumes())

@@ -414,9 +414,9 @@ void ShadowMedia::Advance(double depth, const DblRGBColour& thickness)
 {
 	Point point = points.back();
 
-	// densities below 0, and a cubic that overshoots, must not make light
+	// densities below 0 or no number, and a cubic that overshoots, must not make light
 	for(int k = 0; k < 3; k++)
-		point.thickness[k] += max(thickness[k], 0.0);
+		point.thickness[k] += (thickness[k] > 0.0) ? thickness[k] : 0.0;
 	point.depth = depth;
 	point.visible = visibleAtFront * exp(-Least(point.thickness));
 	points.push_back(point);

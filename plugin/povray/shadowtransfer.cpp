@@ -45,6 +45,8 @@ bool ShadowTransfer::Read(const BLEND_MAP *map)
 		}
 		else
 			return false;
+		if(!(fabs(entry.colour.red()) + fabs(entry.colour.green()) + fabs(entry.colour.blue()) < HUGE_VAL))
+			return false; // not to be integrated
 
 		grey = grey && (entry.colour.red() == entry.colour.green()) && (entry.colour.red() == entry.colour.blue());
 		if(!entries.empty())

@@ -397,12 +397,12 @@ bool ShadowTree::Sweep::Next(unsigned int& first, unsigned int& end)
 		const Node *children = &tree.nodes[node.first];
 		const bool meetsLeft = beam.Meets(children[0].slabs.side[0], children[0].slabs.side[1], left.rect);
 		const bool meetsRight = beam.Meets(children[1].slabs.side[0], children[1].slabs.side[1], right.rect);
-		const bool leftFirst = (left.rect.nearness > right.rect.nearness);
+		const bool leftFirst = meetsLeft && meetsRight && (left.rect.nearness > right.rect.nearness);
 		if(meetsLeft && !leftFirst)
 			Push(left);
 		if(meetsRight)
 			Push(right);
-		if(meetsLeft && leftFirst)
+		if(leftFirst)
 			Push(left);
 	}
 	return false;

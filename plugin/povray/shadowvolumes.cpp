@@ -22,16 +22,31 @@ namespace
 /// of, may be missed.
 const double kStepsAcross = 24.0;
 
+/// Extinction beyond any world's size is as dark as that, and can still be reckoned with. So is what is no number, to ray tracing as well.
+const double kMostExtinction = 1.0e30;
+
+DblRGBColour Bounded(DblRGBColour extinction)
+{
+	for(int k = 0; k < 3; k++)
+	{
+		if(!(extinction[k] < kMostExtinction))
+			extinction[k] = kMostExtinction;
+		else if(extinction[k] < -kMostExtinction)
+			extinction[k] = -kMostExtinction;
+	}
+	return extinction;
+}
+
 }
 
 ShadowMedium::ShadowMedium(const Media& media, double length) :
-	pigment(media.Density), extinction(media.Extinction), scale(media.Extinction), mapped(NULL), step(length)
+	pigment(media.Density), extinction(Bounded(DblRGBColour(media.Extinction))), scale(extinction), mapped(NULL), step(length)
 {
 	for(const PIGMENT *p = pigment; p != NULL; p = static_cast<const PIGMENT *>(p->Next))
 	{
 		const ShadowDensity density(p);
 		if(density.GetKind() == ShadowDensity::kConstant)
-			scale *= density.Colour();
+			scale = Bounded(scale * density.Colour());
 		else
 			densities.push_back(density);
 	}
@@ -46,7 +61,7 @@ DblRGBColour ShadowMedium::Extinction(const Vector3d& point, TraceThreadData *th
 	if(densities.empty())
 		return scale;
 	Evaluate_Density_Pigment(pigment, point, density, thread);
-	return DblRGBColour(density) * extinction;
+	return Bounded(DblRGBColour(density) * extinction);
 }
 
 void ShadowVolumes::Add(const ObjectBase *object)

@@ -68,7 +68,7 @@ static void *look_everywhere(void *data) {
 /* A smaller map where fewer cases are asked for. */
 static dsm_map *bake_with(int threads, int stops_often, uint64_t seed) {
   char resolution[32];
-  snprintf(resolution, sizeof resolution, "resolution %d", (int)most_cases(150));
+  snprintf(resolution, sizeof resolution, "resolution %d", UNLESS_SLOW(150, 100));
   world w = {.shapes = scene, .count = SHAPES};
   dsm_box boxes[SHAPES];
   for (int i = 0; i < SHAPES; ++i) boxes[i] = scene[i].box;
