@@ -135,8 +135,10 @@ static inline __attribute__((always_inline)) int delta_find(const visibility_cod
     return 0;
   delta_seek(s, walk, code);
   uint32_t width = walk->depth < code ? 0 : walk->depth - walk->depth_before;
-  *place = (visibility_place){0, 0, codes->value_mask - (width ? walk->fall_before : walk->fall), codes->value_mask - walk->fall,
-                              width ? (key.z - walk->depth_before) / width : 1};
+  place->a = place->b = 0;
+  place->front = codes->value_mask - (width ? walk->fall_before : walk->fall);
+  place->behind = codes->value_mask - walk->fall;
+  place->t = width ? (key.z - walk->depth_before) / width : 1;
   return 1;
 }
 

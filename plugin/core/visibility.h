@@ -122,8 +122,11 @@ static inline __attribute__((always_inline)) int visibility_find_as(const visibi
   /* Behind the last vertex both ends are that vertex, and a zero width never divides. */
   uint64_t front = record_word(at - bytes), behind = i < function->count ? record_word(at) : front;
   double near_end = codes_depth(codes, front, whole), width = codes_depth(codes, behind, whole) - near_end;
-  *place = (visibility_place){i - 1, i - (i == function->count), codes_value(codes, front), codes_value(codes, behind),
-                              width > 0 ? (key.z - near_end) / width : 1};
+  place->a = i - 1;
+  place->b = i - (i == function->count);
+  place->front = codes_value(codes, front);
+  place->behind = codes_value(codes, behind);
+  place->t = width > 0 ? (key.z - near_end) / width : 1;
   return 1;
 }
 
@@ -141,7 +144,8 @@ static inline int visibility_find(const visibility *function, visibility_key key
   return visibility_find_as(function, key, hint, place, codes->record_bits / 8, codes_are_whole(codes));
 }
 
-static inline double visibility_value(const visibility *function, const visibility_place *place, uint32_t channel)
+static inline __attribute__((always_inline)) double visibility_value(const visibility *function, const visibility_place *place,
+                                                                      uint32_t channel)
 {
   double a = (int32_t)(channel ? visibility_code(function, place->a, channel) : place->front);
   double b = (int32_t)(channel ? visibility_code(function, place->b, channel) : place->behind);

@@ -8,6 +8,9 @@
 
 enum { NO_BIT = 1000 };   /* above all of a float */
 
+/* Look-ups take longer in deltas, so these have to take fewer bytes than this share of what absolute records take. */
+static const double DELTAS_SPARE = 0.8;
+
 /* The lowest bit of a depth >= 0, as the exponent of 2. */
 static int lowest_bit(float depth)
 {
@@ -104,7 +107,7 @@ tile *tile_compact(tile *t)
     depth_bits = value_bits;
   codes_set(&codes, (depth_bits + value_bits + 7) / 8 * 8, value_bits);
   uint64_t size = codes.records + codes.record_bits / 8 * records + behind;
-  tile *deltas = delta_tile_of(t, &codes, size < t->size ? size : t->size);
+  tile *deltas = delta_tile_of(t, &codes, (size_t)(DELTAS_SPARE * (double)(size < t->size ? size : t->size)));
   if (deltas) {
     tile_destroy(t);
     return deltas;

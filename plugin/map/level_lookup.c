@@ -69,7 +69,9 @@ typedef struct {
 
 static inline __attribute__((always_inline)) searched search_of(const view *v, const visibility *function, uint32_t *hint, reading as)
 {
-  searched pixel = {.function = function, .hint = hint};
+  searched pixel;
+  pixel.function = function;
+  pixel.hint = hint;
   if (as.bytes == DELTAS)
     pixel.walk = delta_begin(&v->deltas, function->first, function->records);
   return pixel;
@@ -115,7 +117,7 @@ static inline __attribute__((always_inline)) dsm_result add_surface(view *v, con
     return DSM_TRACE;
   if (in_doubt) {
     visibility_key deeper = visibility_key_as(codes, z - receiver_middle(&v->planes[0], du, dv), as.whole);
-    if (deeper.word < key.word)   /* by rounding alone */
+    if (as.bytes == DELTAS && deeper.word < key.word)   /* by rounding alone */
       deeper = key;
     in_doubt = find(v, pixel, deeper, &middle, as);
   }
