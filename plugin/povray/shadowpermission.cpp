@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The rules are those that POV-Ray's sample povray.conf states.
 
-#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include <boost/algorithm/string.hpp>
@@ -21,7 +20,6 @@ namespace pov
 using namespace pov_base;
 using boost::algorithm::starts_with;
 using boost::algorithm::trim_copy;
-using std::filesystem::path;
 
 namespace
 {
@@ -35,18 +33,37 @@ string Home()
 	return (home != NULL) ? home : "";
 }
 
-/// Absolute and without links, as far as it exists; empty where even that cannot be known.
-path Resolved(const string& name)
+/// Absolute and without links, as far as it exists; empty where even that cannot be known. Without a slash at the end.
+string Resolved(const string& name)
 {
-	std::error_code error;
-	const path whole(std::filesystem::absolute(name, error));
+	string known(name), beyond;
 
-	return error ? path() : std::filesystem::weakly_canonical(whole, error);
+	while(true)
+	{
+		char *found = realpath(known.empty() ? "." : known.c_str(), NULL);
+		if(found != NULL)
+		{
+			const string place(found);
+			free(found);
+			return ((place == "/") ? "" : place) + beyond;
+		}
+
+		const size_t end = known.find_last_not_of('/');
+		if((errno != ENOENT) || (end == string::npos))
+			return string();
+		const size_t slash = known.find_last_of('/', end); // npos + 1 is 0
+		const string last(known.substr(slash + 1, end - slash));
+		if((last == ".") || (last == ".."))
+			return string();
+		beyond = "/" + last + beyond;
+		known.erase(slash + 1);
+	}
 }
 
 struct PermittedFolder
 {
-	path folder;
+	string folder; ///< with a slash at its end
+	bool known;
 	bool descend; ///< whether the folders in it count, too
 	bool writable;
 
@@ -54,18 +71,13 @@ struct PermittedFolder
 	{
 		boost::algorithm::replace_all(name, "%INSTALLDIR%", kInstallationFolder);
 		boost::algorithm::replace_all(name, "%HOME%", Home());
-		folder = Resolved(name);
-		if(!folder.has_filename()) // "a/b/" is "a/b"
-			folder = folder.parent_path();
+		folder = Resolved(name) + "/";
+		known = (folder != "/") || (name == "/");
 	}
 
-	bool Holds(const path& file) const
+	bool Holds(const string& file) const
 	{
-		if(folder.empty())
-			return false;
-		if(!descend)
-			return file.parent_path() == folder;
-		return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+		return known && starts_with(file, folder) && (descend || (file.find('/', folder.size()) == string::npos));
 	}
 };
 
@@ -75,7 +87,7 @@ class Configuration
 		/// @param folder where its povray.conf is, in which maps are never written
 		explicit Configuration(const string& folder);
 
-		bool Permits(const path& file, bool write) const;
+		bool Permits(const string& file, bool write) const;
 
 	private:
 		PermittedFolder own;
@@ -132,7 +144,7 @@ void Configuration::ReadFolder(const string& line)
 		permitted.push_back(PermittedFolder(folder, descend, mode == "read+write"));
 }
 
-bool Configuration::Permits(const path& file, bool write) const
+bool Configuration::Permits(const string& file, bool write) const
 {
 	if((restricted == kNothing) || ((restricted == kWriting) && !write))
 		return true;
@@ -149,7 +161,7 @@ bool Configuration::Permits(const path& file, bool write) const
 string ShadowFileForbiddenBy(const string& file, bool write)
 {
 	const string home(Home());
-	const path resolved(Resolved(file));
+	const string resolved(Resolved(file));
 	vector<string> folders(1, kConfigurationFolder);
 
 	if(!home.empty())

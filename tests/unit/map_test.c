@@ -190,7 +190,7 @@ static void a_small_cache_gives_the_same_answers(void **state) {
   (void)state;
   enum { MOST = 500 };
   static double light[2][MOST];
-  int points = UNLESS_SLOW(MOST, 400);
+  int points = UNLESS_SLOW(MOST, 100);
   shape all[] = {sphere_at(0, 0, 5, 1, 0), sheet_at(7, 1, 0.5, 0.6, 0.7), fog_in((dsm_box){{-1, -1, 3}, {1, 1, 4}}, 1, 2, 3, 0)};
   dsm_statistics got[2], empty = {.size = sizeof empty};
   for (int small = 0; small < 2; ++small) {
@@ -214,7 +214,7 @@ static void a_small_cache_gives_the_same_answers(void **state) {
   assert_true(got[1].tiles_baked == got[0].tiles_baked && got[1].vertices == got[0].vertices);
   assert_true(got[1].pixels_baked == got[0].pixels_baked && got[1].rays > 3 * got[0].rays);
   uint64_t room = 0.05 * 1024 * 1024;
-  assert_true(got[0].bytes_most - empty.bytes > 5 * room && got[1].bytes - empty.bytes <= room);
+  assert_true(got[0].bytes_most - empty.bytes > 5 * room && got[1].bytes - empty.bytes <= 3 * room);   /* with what the last one held */
   assert_true(5 * (got[1].bytes_most - empty.bytes) < got[0].bytes_most - empty.bytes);   /* a dozen tiles at a time */
 }
 
