@@ -149,8 +149,8 @@ install_in_place() {
   install -C -D -m 755 "$tree/unix/povray" "$prefix/bin/povray"
   cmp -s "$tree/.sum" "$prefix/share/povray-3.7/.sum" && return
   "$make" -s --no-print-directory -C "$tree" install-data "${in_place[@]}" >/dev/null
-  # POV-Ray reads and writes only where it may; in place that includes the project's own folder.
-  sed -i 's|^read+write  = \.$|&\nread+write* = %INSTALLDIR%/'"$(realpath --relative-to="$prefix/share/povray-3.7" "$top")|" \
+  # Maps are read and written only where povray.conf permits; in place that is the current folder with all below it, and the project's own.
+  sed -i 's|^read+write  = \.$|read+write* = .\nread+write* = %INSTALLDIR%/'"$(realpath --relative-to="$prefix/share/povray-3.7" "$top")|" \
     "$prefix/etc/povray/3.7/povray.conf"
   cp "$tree/.sum" "$prefix/share/povray-3.7/.sum"
 }
