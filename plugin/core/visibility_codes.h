@@ -107,6 +107,12 @@ static inline visibility_key visibility_key_of(const visibility_codes *codes, do
   return visibility_key_as(codes, z, codes_are_whole(codes));
 }
 
+/* The code next to a value in VALUE_STEPS, `most` being that for 1; whether it stands for exactly that is another matter. */
+static inline uint32_t code_of_value(uint32_t value, uint32_t most)
+{
+  return (value * most + VALUE_STEPS / 2) / VALUE_STEPS;
+}
+
 /* What a code stands for, in VALUE_STEPS; `most` is the largest code. */
 static inline uint32_t value_of_code(uint32_t code, uint32_t most)
 {

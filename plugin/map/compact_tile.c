@@ -45,15 +45,10 @@ static uint32_t choose_depths(const tile *t, visibility_codes *to)
   return bits;
 }
 
-/* The code next to a value; whether it stands for exactly that is another matter. */
-static uint32_t code_of_value(uint32_t value, uint32_t bits)
-{
-  return (value * ((1u << bits) - 1) + VALUE_STEPS / 2) / VALUE_STEPS;
-}
-
 static int tells(uint32_t bits, uint32_t value)
 {
-  return value_of_code(code_of_value(value, bits), (1u << bits) - 1) == value;
+  uint32_t most = (1u << bits) - 1;
+  return value_of_code(code_of_value(value, most), most) == value;
 }
 
 /* The least number of bits, from `bits` on, that tell all values of a pixel. */
@@ -89,7 +84,7 @@ static void translate(const tile *from, uint32_t place, tile *to)
     if (codes->per_quantum > 0)
       depth = (uint64_t)(visibility_depth(&v, i) * codes->per_quantum);   /* exact */
     for (uint32_t c = 0; c < v.channels; c++)
-      values[c] = code_of_value(visibility_stored(&v, i, c), codes->value_bits);
+      values[c] = code_of_value(visibility_stored(&v, i, c), codes->value_mask);
     tile_put_record(to, first + i, depth << codes->value_bits | values[0]);
     if (v.channels == 3)
       tile_put_record(to, first + (size_t)v.count + i, values[2] << codes->value_bits | values[1]);

@@ -33,18 +33,12 @@ static uint32_t length_of(uint32_t number)
   return number ? 32 - (uint32_t)__builtin_clz(number) : 0;
 }
 
-/* The value's code where the most is that for 1; exact, as the tile has been found to be told by these bits. */
-static uint32_t code_of(const visibility *v, uint32_t vertex, uint32_t most)
-{
-  return (visibility_stored(v, vertex, 0) * most + VALUE_STEPS / 2) / VALUE_STEPS;
-}
-
-/* Its deltas, behind `to`; NONE: it has none that tell it. */
+/* Its deltas, behind `to`, exact, as the tile has been found to be told by these codes; NONE: it has none that tell it. */
 static uint32_t read_deltas(const visibility *v, const visibility_codes *codes, uint32_t *start, delta *to)
 {
   uint32_t most = codes->value_mask, depth = 0, value = most, n = 0;
   for (uint32_t i = 0; i < v->count; i++) {
-    uint32_t next = (uint32_t)(visibility_depth(v, i) * codes->per_quantum), code = code_of(v, i, most);
+    uint32_t next = (uint32_t)(visibility_depth(v, i) * codes->per_quantum), code = code_of_value(visibility_stored(v, i, 0), most);
     if (i == 0)
       *start = depth = next;
     if (next < depth || code > value || (i == 1 && n == 0 && next == depth))
