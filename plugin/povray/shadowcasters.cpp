@@ -9,6 +9,7 @@
 #include "backend/math/vector.h"
 #include "backend/scene/objects.h"
 #include "backend/shadow/shadowcasters.h"
+#include "backend/shadow/shadowthreads.h"
 
 // this must be the last file included
 #include "base/povdebug.h"
@@ -28,6 +29,9 @@ const double kOutsizedFactor = 10.0;
 const double kInfiniteLength = 1.0e9;
 
 const size_t kCacheLine = 64; // bytes
+
+/// So many objects are sketched by a thread at once.
+const size_t kStretch = 4096;
 
 bool BoxOf(const ObjectBase *object, dsm_box& box)
 {
@@ -91,8 +95,10 @@ bool ShadowCasters::Dims(const Interior *interior)
 	return false;
 }
 
-ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene) : hasVolumes(false), hasUnmappedVolumes(false)
+ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene, unsigned int t) : threads(t), hasVolumes(false), hasUnmappedVolumes(false)
 {
+	objects.reserve(scene.size());
+	boxes.reserve(scene.size());
 	for(vector<ObjectPtr>::const_iterator i(scene.begin()); i != scene.end(); i++)
 	{
 		dsm_box box;
@@ -128,9 +134,29 @@ void ShadowCasters::Prepare() const
 
 	if(tree)
 		return;
-	boost::scoped_ptr<ShadowTree> made(new ShadowTree(boxes));
-	Sketch(*made);
+	boost::scoped_ptr<ShadowTree> made(new ShadowTree(boxes, threads));
+
+	vector<unsigned int> places(objects.size());
+	for(unsigned int place = 0; place < places.size(); place++)
+		places[made->Box(place)] = place;
+	shapes.resize(objects.size());
+	rods.reset(new ShadowRod[objects.size()]);
+	ShareWork(threads, (objects.size() + kStretch - 1) / kStretch, boost::bind(&ShadowCasters::Sketch, this, boost::cref(places), _1));
 	tree.swap(made);
+}
+
+/// What is looked at together lies together, in the order of the tree. But the objects lie in memory in their own order.
+void ShadowCasters::Sketch(const vector<unsigned int>& places, size_t stretch) const
+{
+	ShadowRod rod;
+
+	for(size_t i = stretch * kStretch; i < min((stretch + 1) * kStretch, objects.size()); i++)
+	{
+		const ShadowShape shape = ShadowShapeOf(objects[i], rod);
+		shapes[places[i]] = shape;
+		if(shape == kRodShape)
+			rods[places[i]] = rod;
+	}
 }
 
 void ShadowCasters::FetchObject(unsigned int place) const
@@ -143,33 +169,6 @@ void ShadowCasters::FetchObject(unsigned int place) const
 			__builtin_prefetch(transform + i);
 	for(size_t i = kCacheLine; i < sizeof(ObjectBase); i += kCacheLine)
 		__builtin_prefetch(reinterpret_cast<const char *>(object) + i);
-}
-
-/// In the order of the tree: what is looked at together lies together. But the objects lie in memory in their own order.
-void ShadowCasters::Sketch(const ShadowTree& inOrderOf) const
-{
-	vector<unsigned char> shapeOf(objects.size());
-	vector<ShadowRod> rodOf;
-	ShadowRod rod;
-
-	for(size_t i = 0; i < objects.size(); i++)
-	{
-		shapeOf[i] = ShadowShapeOf(objects[i], rod);
-		if(shapeOf[i] != kRodShape)
-			continue;
-		if(rodOf.empty())
-			rodOf.resize(objects.size());
-		rodOf[i] = rod;
-	}
-
-	shapes.resize(objects.size());
-	rods.resize(rodOf.size());
-	for(unsigned int place = 0; place < shapes.size(); place++)
-	{
-		shapes[place] = shapeOf[inOrderOf.Box(place)];
-		if(shapes[place] == kRodShape)
-			rods[place] = rodOf[inOrderOf.Box(place)];
-	}
 }
 
 /// A floor of 10,000 units with a few objects on it, or a sky around everything, would make the rest of the scene one

@@ -5,6 +5,7 @@
 #ifndef POVRAY_BACKEND_SHADOWCASTERS_H
 #define POVRAY_BACKEND_SHADOWCASTERS_H
 
+#include <boost/scoped_array.hpp>
 #include <boost/scoped_ptr.hpp>
 #include <boost/thread/mutex.hpp>
 
@@ -17,7 +18,8 @@ namespace pov
 class ShadowCasters
 {
 	public:
-		explicit ShadowCasters(const vector<ObjectPtr>& scene);
+		/// @param[in]      threads     that may be used to prepare
+		ShadowCasters(const vector<ObjectPtr>& scene, unsigned int threads);
 
 		/// One box for each object that maps hold.
 		const vector<dsm_box>& Boxes() const { return boxes; }
@@ -63,25 +65,25 @@ class ShadowCasters
 		/// Has memory send what drawing, or an intersection test, will need.
 		void FetchDrawing(unsigned int place) const
 		{
-			if(!rods.empty())
-				__builtin_prefetch(&rods[place]);
+			__builtin_prefetch(&rods[place]);
 		}
 		void FetchObject(unsigned int place) const;
 	private:
+		const unsigned int threads;
 		vector<ObjectPtr> objects;    ///< parallel to boxes
 		vector<dsm_box> boxes;
 		vector<ObjectPtr> unmapped;
 
 		mutable boost::mutex mutex;   ///< guards the making of the next three
 		mutable boost::scoped_ptr<ShadowTree> tree;
-		mutable vector<unsigned char> shapes; ///< ShadowShape, by place in the tree
-		mutable vector<ShadowRod> rods;       ///< empty if there is none; else parallel to shapes
+		mutable vector<unsigned char> shapes;  ///< ShadowShape, by place in the tree
+		mutable boost::scoped_array<ShadowRod> rods; ///< parallel to shapes; only rods are set, the rest costs no memory
 
 		bool hasVolumes, hasUnmappedVolumes;
 		ShadowVolumes volumes;
 
 		void SplitOffOutsized();
-		void Sketch(const ShadowTree& inOrderOf) const;
+		void Sketch(const vector<unsigned int>& places, size_t stretch) const;
 };
 
 }

@@ -107,7 +107,7 @@ shared_ptr<ShadowMaps> ShadowMaps::New(ViewData *viewData, int method, int threa
 
 ShadowMaps::ShadowMaps(ViewData *vd, int method, int threadCount, vector<ViewThreadData *>& threads) :
 	viewData(vd),
-	casters((method == kPOVList_ShadowMethod_None) ? kNoObjects : vd->GetSceneData()->objects),
+	casters((method == kPOVList_ShadowMethod_None) ? kNoObjects : vd->GetSceneData()->objects, threadCount),
 	unshadowed(method == kPOVList_ShadowMethod_None),
 	rayTracedLights(0),
 	current(&ShadowMaps::Release)

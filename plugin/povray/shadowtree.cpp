@@ -5,6 +5,7 @@
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
+#include "backend/shadow/shadowthreads.h"
 #include "backend/shadow/shadowtree.h"
 
 // this must be the last file included
@@ -21,6 +22,9 @@ const unsigned int kLeafBoxes = 4;
 /// Of parts of few boxes there are very many, and each costs its bins.
 enum { kMostBins = 16, kFewBins = 8, kFewestBins = 4 };
 const unsigned int kFewItems = 64, kFewestItems = 16;
+
+/// A part of so many boxes is one thread's work.
+const unsigned int kBranchItems = 4096;
 
 /// What one instruction works on. The fourth lane says nothing.
 typedef float Lanes __attribute__((vector_size(16)));
@@ -100,19 +104,44 @@ void Include(dsm_box& box, const dsm_box& other)
 class ShadowTree::Builder
 {
 	public:
-		Builder(ShadowTree& t, const vector<dsm_box>& boxes);
+		Builder(ShadowTree& t, const vector<dsm_box>& boxes, unsigned int threads);
 	private:
 		ShadowTree& tree;
-		vector<Item> items; ///< in the order of the leaves
+		const vector<dsm_box>& boxes;
+		const unsigned int count;
+		boost::scoped_array<Item> items; ///< in the order of the leaves
 
-		/// A stretch of `items`.
+		/// A stretch of `items`, and the node that holds it.
 		struct Part
 		{
-			unsigned int first, count;
+			unsigned int node, first, count;
 			Item all, centres;
 		};
 
-		void Build(unsigned int node, const Part& part);
+		/// A part that is too large for one thread, and what becomes of it.
+		struct Fork
+		{
+			Part part, sides[2];
+		};
+
+		/// A part for one thread. Its nodes are counted from its own.
+		struct Branch
+		{
+			Part part;
+			vector<Node> nodes;
+		};
+		vector<Fork> forks;
+		vector<Branch> branches;
+
+		void ReadBoxes(size_t stretch);
+		void SplitFork(size_t fork) { Split(forks[fork].part, forks[fork].sides[0], forks[fork].sides[1]); }
+		void GrowBranch(size_t branch);
+		void Plan(const Part& part, vector<Fork>& wide);
+		void Graft(const Branch& branch);
+		static void SetLeaf(Node& node, const Part& part);
+		static unsigned int AddChildren(vector<Node>& nodes, unsigned int node);
+		void Build(vector<Node>& nodes, const Part& part);
+		void Split(const Part& part, Part& left, Part& right);
 		bool Cheapest(const Part& part, const Bins& bins, int& axis, int& bin) const;
 		void Divide(const Part& part, const Bins& bins, int axis, int bin, Part& left, Part& right);
 		void Halve(const Part& part, Part& left, Part& right) const;
@@ -130,14 +159,47 @@ class ShadowTree::Builder
 		}
 };
 
-ShadowTree::Builder::Builder(ShadowTree& t, const vector<dsm_box>& boxes) : tree(t), items(boxes.size())
+/// The tree is the same for any number of threads.
+ShadowTree::Builder::Builder(ShadowTree& t, const vector<dsm_box>& b, unsigned int threads) :
+	tree(t), boxes(b), count(boxes.size()), items(new Item[count])
 {
 	Part whole;
+	vector<Fork> wide;
 
-	whole.first = 0;
-	whole.count = boxes.size();
-	tree.order.resize(whole.count);
-	for(unsigned int i = 0; i < whole.count; i++)
+	tree.order.resize(count);
+	tree.leaves.reset(new Slabs[count]);
+	tree.nodes.resize(1);
+	ShareWork(threads, (count + kBranchItems - 1) / kBranchItems, boost::bind(&Builder::ReadBoxes, this, _1));
+
+	whole.node = whole.first = 0;
+	whole.count = count;
+	Measure(whole);
+	for(Plan(whole, wide); !wide.empty(); )
+	{
+		forks.swap(wide);
+		wide.clear();
+		ShareWork(threads, forks.size(), boost::bind(&Builder::SplitFork, this, _1));
+		for(size_t i = 0; i < forks.size(); i++)
+		{
+			const unsigned int children = AddChildren(tree.nodes, forks[i].part.node);
+			for(unsigned int side = 0; side < 2; side++)
+			{
+				forks[i].sides[side].node = children + side;
+				Plan(forks[i].sides[side], wide);
+			}
+		}
+	}
+
+	ShareWork(threads, branches.size(), boost::bind(&Builder::GrowBranch, this, _1));
+	for(size_t i = 0; i < branches.size(); i++)
+		Graft(branches[i]);
+}
+
+void ShadowTree::Builder::ReadBoxes(size_t stretch)
+{
+	const unsigned int first = stretch * kBranchItems;
+
+	for(unsigned int i = first; i < min(first + kBranchItems, count); i++)
 	{
 		Item& item = items[i];
 		for(int axis = 0; axis < 3; axis++)
@@ -148,38 +210,93 @@ ShadowTree::Builder::Builder(ShadowTree& t, const vector<dsm_box>& boxes) : tree
 		item.low[3] = item.high[3] = 0.0f;
 		tree.order[i] = i;
 	}
-	Measure(whole);
-	tree.nodes.reserve(whole.count);
-	tree.nodes.resize(1);
-	Build(0, whole);
-	tree.leaves.resize(whole.count);
-	for(unsigned int i = 0; i < whole.count; i++)
+}
+
+/// Decides whether a part is one thread's work.
+void ShadowTree::Builder::Plan(const Part& part, vector<Fork>& wide)
+{
+	SetLeaf(tree.nodes[part.node], part);
+	if(part.count > kBranchItems)
+	{
+		wide.push_back(Fork());
+		wide.back().part = part;
+	}
+	else
+	{
+		branches.push_back(Branch());
+		branches.back().part = part;
+	}
+}
+
+void ShadowTree::Builder::GrowBranch(size_t branch)
+{
+	Part part(branches[branch].part);
+	vector<Node>& nodes = branches[branch].nodes;
+
+	part.node = 0;
+	nodes.reserve(part.count);
+	nodes.resize(1);
+	Build(nodes, part);
+	for(unsigned int i = part.first; i < part.first + part.count; i++)
 		tree.leaves[i] = Sides(items[i]);
 }
 
-void ShadowTree::Builder::Build(unsigned int node, const Part& part)
+/// Puts a branch in its place.
+void ShadowTree::Builder::Graft(const Branch& branch)
 {
-	Node& here = tree.nodes[node];
-	here.slabs = Sides(part.all);
-	here.first = part.first;
-	here.count = part.count;
+	const unsigned int before = tree.nodes.size() - 1; // its own node is there already
+
+	tree.nodes.insert(tree.nodes.end(), branch.nodes.begin() + 1, branch.nodes.end());
+	tree.nodes[branch.part.node] = branch.nodes[0];
+	for(unsigned int i = 0; i < branch.nodes.size(); i++)
+	{
+		Node& node = tree.nodes[(i == 0) ? branch.part.node : before + i];
+		if(node.count == 0)
+			node.first += before;
+	}
+}
+
+void ShadowTree::Builder::SetLeaf(Node& node, const Part& part)
+{
+	node.slabs = Sides(part.all);
+	node.first = part.first;
+	node.count = part.count;
+}
+
+/// @return     the left one
+unsigned int ShadowTree::Builder::AddChildren(vector<Node>& nodes, unsigned int node)
+{
+	const unsigned int children = nodes.size();
+
+	nodes[node].first = children;
+	nodes[node].count = 0;
+	nodes.resize(children + 2);
+	return children;
+}
+
+void ShadowTree::Builder::Build(vector<Node>& nodes, const Part& part)
+{
+	SetLeaf(nodes[part.node], part);
 	if(part.count <= kLeafBoxes)
 		return;
 
-	const unsigned int children = tree.nodes.size();
-	here.first = children;
-	here.count = 0;
-	tree.nodes.resize(children + 2);
-
 	Part left, right;
+	left.node = AddChildren(nodes, part.node);
+	right.node = left.node + 1;
+	Split(part, left, right);
+	Build(nodes, left);
+	Build(nodes, right);
+}
+
+void ShadowTree::Builder::Split(const Part& part, Part& left, Part& right)
+{
 	const Bins bins(part.centres, part.count);
 	int axis, bin;
+
 	if(Cheapest(part, bins, axis, bin))
 		Divide(part, bins, axis, bin, left, right);
 	else
 		Halve(part, left, right);
-	Build(children, left);
-	Build(children + 1, right);
 }
 
 /// The split after which a ray meets the fewest boxes. Larger parts are split along their widest side: the other two would
@@ -299,10 +416,10 @@ void ShadowTree::Builder::Measure(Part& part) const
 	}
 }
 
-ShadowTree::ShadowTree(const vector<dsm_box>& boxes)
+ShadowTree::ShadowTree(const vector<dsm_box>& boxes, unsigned int threads)
 {
 	if(!boxes.empty())
-		Builder(*this, boxes);
+		Builder(*this, boxes, threads);
 }
 
 ShadowTree::Walk::Walk(const ShadowTree& t, const dsm_ray& r, Stack& s) : tree(t), line(r), stack(s), leafItem(0), leafEnd(0)

@@ -6,6 +6,8 @@
 
 #include <vector>
 
+#include <boost/scoped_array.hpp>
+
 #include "backend/shadow/shadowbeam.h"
 
 namespace pov
@@ -22,7 +24,8 @@ class ShadowTree
 		class Builder;
 		struct Slabs;
 	public:
-		explicit ShadowTree(const std::vector<dsm_box>& boxes);
+		/// @param[in]      threads     that may be used
+		ShadowTree(const std::vector<dsm_box>& boxes, unsigned int threads);
 
 		/// A ray, ready to be compared with many boxes.
 		class Line
@@ -113,7 +116,7 @@ class ShadowTree
 
 		std::vector<Node> nodes;
 		std::vector<unsigned int> order; ///< boxes in the order of the leaves
-		std::vector<Slabs> leaves;       ///< in that order
+		boost::scoped_array<Slabs> leaves; ///< in that order
 };
 
 inline ShadowTree::Line::Line(const dsm_ray& r) : ray(r)
