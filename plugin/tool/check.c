@@ -64,7 +64,7 @@ static void check_tile(tally *sum, const map_grid *grid, const tile_key *key, co
   sum->tiles_wrong += (uint64_t)wrong;
 }
 
-static int check_map(tally *sum)
+static void check_tiles(tally *sum)
 {
   const map_header *header = &sum->map->header;
   tile_key key = {0, 0, 0, 0};
@@ -83,7 +83,19 @@ static int check_map(tally *sum)
       sum->pixels += (uint64_t)tile_extent_of(&grid, &key).across * tile_extent_of(&grid, &key).up;
     tile_destroy(t);
   }
-  return sum->tiles_wrong ? STATUS_TROUBLE : STATUS_FINE;
+}
+
+static int check_map(const open_map *map, void *unused)
+{
+  (void)unused;
+  tally sum = {.map = map};
+  check_tiles(&sum);
+  if (sum.tiles_wrong)
+    return trouble("%s is damaged: %llu of %llu tiles are bad.", map->path, (unsigned long long)sum.tiles_wrong,
+                   (unsigned long long)sum.tiles);
+  printf("%s is good: %llu tiles, %llu pixels of all levels.\n", map->path, (unsigned long long)sum.tiles,
+         (unsigned long long)sum.pixels);
+  return STATUS_FINE;
 }
 
 int check_run(int argc, char **argv)
@@ -93,18 +105,5 @@ int check_run(int argc, char **argv)
     "casters. Says what is wrong; the exit status is 0 where nothing is, else 2.", NULL, NULL, NULL};
   const char *path = NULL;
   parse_arguments(&parser, argc, argv, &path);
-  open_map map;
-  int status = open_map_begin(&map, path);
-  if (status == STATUS_FINE) {
-    tally sum = {.map = &map};
-    status = check_map(&sum);
-    if (status == STATUS_FINE)
-      printf("%s is good: %llu tiles, %llu pixels of all levels.\n", path, (unsigned long long)sum.tiles,
-             (unsigned long long)sum.pixels);
-    else
-      trouble("%s is damaged: %llu of %llu tiles are bad.", path, (unsigned long long)sum.tiles_wrong,
-              (unsigned long long)sum.tiles);
-  }
-  open_map_end(&map);
-  return status;
+  return with_open_map(open_map_begin, path, check_map, NULL);
 }

@@ -101,8 +101,9 @@ static int write_image(exporter *e, const char *path)
   return status;
 }
 
-static int run(const open_map *map, const arguments *given)
+static int run(const open_map *map, void *data)
 {
+  const arguments *given = data;
   exporter e = {.map = map, .tolerance = given->tolerance};
   if (open_map_grid(map, &given->place, &e.grid) != STATUS_FINE)
     return STATUS_TROUBLE;
@@ -149,10 +150,5 @@ int export_run(int argc, char **argv)
     NULL, NULL, NULL};
   arguments given = {.tolerance = 0.001, .place = {-1, 0}};
   parse_arguments(&parser, argc, argv, &given);
-  open_map map;
-  int status = open_map_begin_deep(&map, given.path);
-  if (status == STATUS_FINE)
-    status = run(&map, &given);
-  open_map_end(&map);
-  return status;
+  return with_open_map(open_map_begin_deep, given.path, run, &given);
 }

@@ -30,8 +30,9 @@ static uint32_t bin_of(uint32_t count)
   return bin;
 }
 
-static void add_tile(level_sum *sum, const map_grid *grid, const tile_key *key, const tile *t)
+static void add_tile(void *data, const map_grid *grid, const tile_key *key, const tile *t)
 {
+  level_sum *sum = (level_sum *)data + key->level;
   tile_extent extent = tile_extent_of(grid, key);
   uint32_t pixels = extent.across * extent.up;
   sum->pixels += pixels;
@@ -115,24 +116,17 @@ static void print_header(const open_map *map)
            map->header.scenes[i].probes);
 }
 
-static int print_map(const open_map *map)
+static int print_map(const open_map *map, void *unused)
 {
+  (void)unused;
   if (open_map_has_depths(map)) {
     print_header(map);
     return info_depths(map);
   }
   level_sum sums[MAX_LEVELS];
   memset(sums, 0, sizeof sums);
-  tile_key key = {0, 0, 0, 0};
-  map_grid grid;
-  for (int more = 0; next_tile(&map->header.projection, &key, &more);) {
-    const tile *t;
-    if (open_map_tile(map, &key, &t) != STATUS_FINE)
-      return STATUS_TROUBLE;
-    map_grid_of(&map->header.projection, key.face, key.level, &grid);
-    add_tile(&sums[key.level], &grid, &key, t);
-    tile_destroy(t);
-  }
+  if (open_map_visit(map, add_tile, sums) != STATUS_FINE)
+    return STATUS_TROUBLE;
   print_header(map);
   const level_sum *finest = &sums[0];
   printf("%-12s %.4g, root mean square over the tiles of level 0 that store anything\n", "compression",
@@ -151,10 +145,5 @@ int info_run(int argc, char **argv)
     "and settings, and for every level its pixels, tiles, vertices and bytes in memory.", NULL, NULL, NULL};
   const char *path = NULL;
   parse_arguments(&parser, argc, argv, &path);
-  open_map map;
-  int status = open_map_begin(&map, path);
-  if (status == STATUS_FINE)
-    status = print_map(&map);
-  open_map_end(&map);
-  return status;
+  return with_open_map(open_map_begin, path, print_map, NULL);
 }

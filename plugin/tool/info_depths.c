@@ -11,8 +11,9 @@ typedef struct {
   double least, most;   /* of the finite depths */
 } depth_sum;
 
-static void add_tile(depth_sum *sum, const map_grid *grid, const tile_key *key, const tile *t)
+static void add_tile(void *data, const map_grid *grid, const tile_key *key, const tile *t)
 {
+  depth_sum *sum = data;
   tile_extent extent = tile_extent_of(grid, key);
   sum->pixels += extent.across * extent.up;
   sum->bytes += sizeof(tile *);
@@ -35,16 +36,8 @@ static void add_tile(depth_sum *sum, const map_grid *grid, const tile_key *key, 
 int info_depths(const open_map *map)
 {
   depth_sum sum = {.least = INFINITY};
-  tile_key key = {0, 0, 0, 0};
-  map_grid grid;
-  for (int more = 0; next_tile(&map->header.projection, &key, &more);) {
-    const tile *t;
-    if (open_map_tile(map, &key, &t) != STATUS_FINE)
-      return STATUS_TROUBLE;
-    map_grid_of(&map->header.projection, key.face, key.level, &grid);
-    add_tile(&sum, &grid, &key, t);
-    tile_destroy(t);
-  }
+  if (open_map_visit(map, add_tile, &sum) != STATUS_FINE)
+    return STATUS_TROUBLE;
   printf("%-12s %llu of %llu have a depth\n", "pixels", (unsigned long long)sum.with_depth, (unsigned long long)sum.pixels);
   if (sum.with_depth)
     printf("%-12s from %.10g to %.10g\n", "depths", sum.least, sum.most);

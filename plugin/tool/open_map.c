@@ -36,6 +36,16 @@ void open_map_end(open_map *map)
   map->file = NULL;
 }
 
+int with_open_map(map_opener *begin, const char *path, map_work *work, void *data)
+{
+  open_map map;
+  int status = begin(&map, path);
+  if (status == STATUS_FINE)
+    status = work(&map, data);
+  open_map_end(&map);
+  return status;
+}
+
 int open_map_tile(const open_map *map, const tile_key *key, const tile **out)
 {
   char text[MAP_REASON_SIZE] = "";
@@ -94,6 +104,21 @@ int next_tile(const projection *p, tile_key *key, int *more)
       if (map_grid_of(p, key->face, key->level, &grid))
         return 1;
   return 0;
+}
+
+int open_map_visit(const open_map *map, tile_visitor *visit, void *data)
+{
+  tile_key key = {0, 0, 0, 0};
+  map_grid grid;
+  for (int more = 0; next_tile(&map->header.projection, &key, &more);) {
+    const tile *t;
+    if (open_map_tile(map, &key, &t) != STATUS_FINE)
+      return STATUS_TROUBLE;
+    map_grid_of(&map->header.projection, key.face, key.level, &grid);
+    visit(data, &grid, &key, t);
+    tile_destroy(t);
+  }
+  return STATUS_FINE;
 }
 
 tile_extent tile_extent_of(const map_grid *grid, const tile_key *key)

@@ -22,6 +22,11 @@ int open_map_begin(open_map *map, const char *path);
 int open_map_begin_deep(open_map *map, const char *path);
 void open_map_end(open_map *map);   /* one that was never opened but is all zeros may be passed too */
 
+/* Opens a map, as one of the two above does, has it worked on, and closes it. Returns what the work returns. */
+typedef int map_opener(open_map *map, const char *path);
+typedef int map_work(const open_map *map, void *data);
+int with_open_map(map_opener *begin, const char *path, map_work *work, void *data);
+
 /* *out is the caller's, for tile_destroy. */
 int open_map_tile(const open_map *map, const tile_key *key, const tile **out);
 
@@ -44,6 +49,10 @@ int open_map_grid(const open_map *map, const place_choice *choice, map_grid *gri
 
 /* Counts through all tiles of a map, finest level first: start with *key all zeros and *more 0; false at the end. */
 int next_tile(const projection *p, tile_key *key, int *more);
+
+/* Shows all tiles of a map, finest level first, up to one that cannot be read. */
+typedef void tile_visitor(void *data, const map_grid *grid, const tile_key *key, const tile *t);
+int open_map_visit(const open_map *map, tile_visitor *visit, void *data);
 
 /* Pixels of a tile that lie on its grid. */
 typedef struct { uint32_t across, up; } tile_extent;

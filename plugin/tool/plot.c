@@ -138,8 +138,9 @@ static int draw(const open_map *map, const arguments *given, const map_grid *gri
   return result == DSM_OK ? STATUS_FINE : trouble_because(result, &why);
 }
 
-static int run(const open_map *map, const arguments *given)
+static int run(const open_map *map, void *data)
 {
+  const arguments *given = data;
   map_grid grid;
   if (open_map_grid(map, &given->place, &grid) != STATUS_FINE)
     return STATUS_TROUBLE;
@@ -207,10 +208,5 @@ int plot_run(int argc, char **argv)
     "pixel is coloured. X counts from the left, Y from the top. Needs the program gnuplot.", NULL, NULL, NULL};
   arguments given = {.place = {-1, 0}};
   parse_arguments(&parser, argc, argv, &given);
-  open_map map;
-  int status = open_map_begin_deep(&map, given.path);
-  if (status == STATUS_FINE)
-    status = run(&map, &given);
-  open_map_end(&map);
-  return status;
+  return with_open_map(open_map_begin_deep, given.path, run, &given);
 }

@@ -59,8 +59,9 @@ static int draw(const open_map *map, slice *s)
   return STATUS_FINE;
 }
 
-static int run(const open_map *map, const arguments *given)
+static int run(const open_map *map, void *data)
 {
+  const arguments *given = data;
   slice s = {.depth = given->depth};
   if (open_map_grid(map, &given->place, &s.grid) != STATUS_FINE)
     return STATUS_TROUBLE;
@@ -108,10 +109,5 @@ int slice_run(int argc, char **argv)
     "channel is written where pixels are marked (light can grow there, and the map has no answer).", NULL, NULL, NULL};
   arguments given = {.place = {-1, 0}};
   parse_arguments(&parser, argc, argv, &given);
-  open_map map;
-  int status = open_map_begin(&map, given.path);
-  if (status == STATUS_FINE)
-    status = run(&map, &given);
-  open_map_end(&map);
-  return status;
+  return with_open_map(open_map_begin, given.path, run, &given);
 }
