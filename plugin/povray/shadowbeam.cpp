@@ -40,12 +40,6 @@ const double kFloatRounding = 1.0e-6;
 typedef float Lanes __attribute__((vector_size(16)));
 typedef int IntLanes __attribute__((vector_size(16)));
 
-/// An end as a float, not in front of the true one.
-inline float Before(double end)
-{
-	return nextafterf(float(end), -HUGE_VALF);
-}
-
 /// Hidden or not is asked of at most so many blocks.
 const int kMostBlocksAsked = 16;
 
@@ -198,7 +192,7 @@ void ShadowBeam::Sort()
 	{
 		across[i] = float((slots[i].u - low[0]) * perCell[0]);
 		upward[i] = float((slots[i].v - low[1]) * perCell[1]);
-		ends[i] = Before(slots[i].end);
+		ends[i] = ShadowFloatBelow(slots[i].end);
 	}
 
 	blockEnds.resize(blocks[0] * blocks[1]);
@@ -229,7 +223,7 @@ void ShadowBeam::Shorten(unsigned int slot, double depth)
 	const double before = s.end;
 
 	s.end = EndAt(rays[s.ray], depth);
-	ends[slot] = Before(s.end);
+	ends[slot] = ShadowFloatBelow(s.end);
 	if(before > cellEnds[s.cell])
 		return;
 
@@ -380,7 +374,7 @@ struct ShadowBeam::Sides
 			b[i] = zero + float(y);
 			c[i] = zero + float(most + kFloatRounding * (kMostCells * (fabs(x) + fabs(y)) + fabs(most)));
 		}
-		nearness = zero + nextafterf(float(outline.rect.nearness), HUGE_VALF);
+		nearness = zero + ShadowFloatAbove(outline.rect.nearness);
 	}
 
 	/// Of four slots, all bits of those that are inside and do not end before the outline.

@@ -4,6 +4,9 @@
 #ifndef POVRAY_BACKEND_SHADOWOUTLINE_H
 #define POVRAY_BACKEND_SHADOWOUTLINE_H
 
+#include <cfloat>
+#include <cmath>
+
 #include "backend/shadow/shadowplugin.h"
 
 namespace pov
@@ -13,6 +16,14 @@ class Cone;
 
 /// Outlines grow by this part of an object's size: transforms are not exactly the inverse of their inverse.
 const double kGrowth = 1.0e-8;
+
+/// A float not above `x`, and one not below: a step or two beside the nearest.
+inline float ShadowFloatBelow(double x)
+{
+	const float near = float(x), step = fabsf(near) * FLT_EPSILON + FLT_MIN;
+	return (step < HUGE_VALF) ? near - step : near;
+}
+inline float ShadowFloatAbove(double x) { return -ShadowFloatBelow(-x); }
 
 inline double ShadowDot(const double a[3], const double b[3])
 {

@@ -50,7 +50,7 @@ bool ShadowRod::Make(const Cone& cone)
 		}
 		if(!(off < 0.1 * across))
 			return false;
-		radii[i] = nextafterf(float(radius + off), HUGE_VALF);
+		radii[i] = ShadowFloatAbove(radius + off);
 	}
 	return true;
 }

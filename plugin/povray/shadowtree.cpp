@@ -204,8 +204,8 @@ void ShadowTree::Builder::ReadBoxes(size_t stretch)
 		Item& item = items[i];
 		for(int axis = 0; axis < 3; axis++)
 		{
-			item.low[axis] = nextafterf(float(boxes[i].low[axis]), -HUGE_VALF);
-			item.high[axis] = nextafterf(float(boxes[i].high[axis]), HUGE_VALF);
+			item.low[axis] = ShadowFloatBelow(boxes[i].low[axis]);
+			item.high[axis] = ShadowFloatAbove(boxes[i].high[axis]);
 		}
 		item.low[3] = item.high[3] = 0.0f;
 		tree.order[i] = i;
