@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static const double PIXEL = 1.0 / 12;   /* variance of a pixel of the finest level */
+static const double PIXEL = 1.0 / 12;   /* variance of a pixel of the finest level, as of any side of length 1 */
 
 /* Of footprint_scaled: the coarser level has taken over when the area has grown by three quarters. */
 static const double BLEND = 4;
@@ -23,11 +23,10 @@ void spread_add(spread *sum, const projection *p, const projected *at, const dou
   for (int i = 0; i < 2; i++) {
     double s[2];
     projection_side(p, at, sides[i], s);
-    s[0] *= f->per_u;
-    s[1] *= f->per_v;
-    sum->xx += s[0] * s[0] / 12;
-    sum->xy += s[0] * s[1] / 12;
-    sum->yy += s[1] * s[1] / 12;
+    double x = s[0] * f->per_u, y = s[1] * f->per_v;
+    sum->xx += x * x * PIXEL;
+    sum->xy += x * y * PIXEL;
+    sum->yy += y * y * PIXEL;
   }
 }
 

@@ -55,19 +55,14 @@ static uint32_t add_hit(const projection *p, uint32_t index, const double q[3], 
   double z = dot(q, f->axes.forward);
   if (!(z > 0))
     return 0;
-  double u = dot(q, f->axes.right), v = dot(q, f->axes.up);
-  if (p->perspective) {
-    double nearness = 1 / z;
-    u *= nearness;
-    v *= nearness;
-  }
+  double nearness = p->perspective ? 1 / z : 1, u = dot(q, f->axes.right) * nearness, v = dot(q, f->axes.up) * nearness;
   double x = (u - f->u0) * f->per_u, y = (v - f->v0) * f->per_v;
   if (!touches(f, x, y, reach))
     return 0;
   double depth = p->perspective ? sqrt(dot(q, q)) : z;
   if (!(depth > f->near_depth))
     return 0;
-  *hit = (projected){index, weight, x, y, depth, u, v};
+  *hit = (projected){index, weight, x, y, depth, u, v, nearness};
   return 1;
 }
 
@@ -126,16 +121,4 @@ void projection_ray(const projection *p, uint32_t index, double x, double y, dsm
       ray->origin[i] = p->origin[i] + u * f->axes.right[i] + v * f->axes.up[i];
       ray->direction[i] = f->axes.forward[i];
     }
-}
-
-void projection_side(const projection *p, const projected *at, const double side[3], double out[2])
-{
-  const face *f = &p->faces[at->face];
-  out[0] = dot(side, f->axes.right);
-  out[1] = dot(side, f->axes.up);
-  if (!p->perspective)
-    return;
-  double z = at->depth / sqrt(1 + at->u * at->u + at->v * at->v), along = dot(side, f->axes.forward);
-  out[0] = (out[0] - at->u * along) / z;
-  out[1] = (out[1] - at->v * along) / z;
 }

@@ -70,7 +70,20 @@ typedef struct {
   double x, y;           /* pixel coordinates, at most `reach` outside the face */
   double depth;
   double u, v;
+  double nearness;       /* 1 / distance along the face's axis; 1 where the light is parallel */
 } projected;
+
+/* A vector at the point `at`, as the face's frame sees it: u, v in tangents or scene units. It is the derivative of the
+ * projection there, times the vector. Inline, as a vector of two that is returned through memory makes the caller wait. */
+static inline void projection_side(const projection *p, const projected *at, const double side[3], double out[2])
+{
+  const frame *axes = &p->faces[at->face].axes;
+  double along = p->perspective ? side[0] * axes->forward[0] + side[1] * axes->forward[1] + side[2] * axes->forward[2] : 0;
+  double u = side[0] * axes->right[0] + side[1] * axes->right[1] + side[2] * axes->right[2];
+  double v = side[0] * axes->up[0] + side[1] * axes->up[1] + side[2] * axes->up[2];
+  out[0] = (u - at->u * along) * at->nearness;
+  out[1] = (v - at->v * along) * at->nearness;
+}
 
 /* Fills `hits` with the faces that answer for `point`; those with zero pixels are left out, and those from which it lies
  * outside by more than `reach` pixels (1/2 for a bilinear look-up), so that the weights may add up to less than 1: the
@@ -79,10 +92,6 @@ uint32_t projection_find(const projection *p, const double point[3], double reac
 
 /* The light ray through pixel coordinates x, y of a face that has pixels. */
 void projection_ray(const projection *p, uint32_t face, double x, double y, dsm_ray *ray);
-
-/* A vector at the point `at`, as the face's frame sees it: u, v in tangents or scene units. It is the derivative of the
- * projection there, times the vector. */
-void projection_side(const projection *p, const projected *at, const double side[3], double out[2]);
 
 /* An orthonormal frame that looks along `forward` (unit length), with `up` near the y axis where it can. */
 frame frame_along(const double forward[3]);

@@ -29,8 +29,8 @@ typedef struct {
 typedef struct { double half, farthest; } receiver_region;
 
 /* `bias` is the settings': scene units in place of what the plane tells, or SETTING_AUTOMATIC. */
-receiver_plane receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound,
-                                   const receiver_region *region, double bias);
+void receiver_plane_seen(const projection *p, const projected *at, const dsm_plane *bound, const receiver_region *region, double bias,
+                         receiver_plane *plane);
 
 /* A rise of nearness in scene units toward the light. Nearness 1 + rise means depth / (1 + rise). */
 static inline double receiver_units(const receiver_plane *plane, double rise)

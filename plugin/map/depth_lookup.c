@@ -24,7 +24,7 @@ typedef struct {
   dsm_worker *worker;
   const projection *p;
   uint32_t face;                /* where the point lies */
-  double u, v, depth;
+  double u, v, depth, nearness; /* see projected */
   double pixel_u, pixel_v;      /* of all faces */
   double bias[2];               /* scene units */
   met_tile met[MET_SIDE * MET_SIDE];
@@ -59,9 +59,11 @@ static int find_point(view *v, const double point[3])
   v->u = dot(q, axes->right);
   v->v = dot(q, axes->up);
   v->depth = z;
+  v->nearness = 1;
   if (p->perspective) {
-    v->u /= z;
-    v->v /= z;
+    v->nearness = 1 / z;
+    v->u *= v->nearness;
+    v->v *= v->nearness;
     v->depth = sqrt(dot(q, q));
   }
   for (uint32_t i = 0; i < p->count; i++)
@@ -76,7 +78,7 @@ static int find_point(view *v, const double point[3])
 /* What the receiver stands for, in map pixels: without a footprint, one of them. */
 static void find_footprint(const view *v, const dsm_receiver *receiver, double sides[2][2])
 {
-  projected at = {.face = v->face, .depth = v->depth, .u = v->u, .v = v->v};
+  projected at = {.face = v->face, .u = v->u, .v = v->v, .nearness = v->nearness};
   for (int i = 0; i < 2; i++) {
     sides[i][0] = i == 0;
     sides[i][1] = i == 1;

@@ -269,7 +269,7 @@ void view_see_planes(view *v, const footprint *f, uint32_t level)
   double baked = (double)(1u << (level < map->first_level ? level : map->first_level));
   receiver_region region = {0.5 * (size - baked) + map->support * baked, size + 0.5 * (f->probes - 1) * apart};
   for (uint32_t k = 0; k < v->plane_count; k++)
-    v->planes[k] = receiver_plane_seen(&map->projection, v->at, &v->receiver->planes[k], &region, map->settings.bias);
+    receiver_plane_seen(&map->projection, v->at, &v->receiver->planes[k], &region, map->settings.bias, &v->planes[k]);
   double width = map->projection.faces[v->at->face].pixel_u;   /* pixels are square, or nearly */
   v->grazing = v->planes[0].reach > GRAZING * region.half * width && v->automatic;
   v->pixel = v->planes[0].depth > 0 ? width * v->at->depth : width;

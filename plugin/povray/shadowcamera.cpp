@@ -21,10 +21,10 @@ namespace
 const double kMostStretch = 16.0;
 
 /// From the point to where a neighbour of its camera ray meets the tangent plane. In the plane, and finite, at any angle.
-void FootprintSide(const Ray& ray, const Ray& neighbour, const Vector3d& point, const Vector3d& normal, double side[3])
+void FootprintSide(double distance, const Ray& neighbour, const Vector3d& point, const Vector3d& normal, double side[3])
 {
 	const Vector3d direction(neighbour.Direction);
-	const Vector3d across(Vector3d(neighbour.Origin) + direction * (point - Vector3d(ray.Origin)).length() - point);
+	const Vector3d across(Vector3d(neighbour.Origin) + direction * distance - point);
 	const double towards = dot(direction, normal);
 	const double slope = max(fabs(towards), 1.0 / kMostStretch) * ((towards < 0.0) ? -1.0 : 1.0);
 	const Vector3d slid(across - direction * (dot(across, normal) / slope));
@@ -74,13 +74,14 @@ void Trace::FindShadowFootprint(const Vector3d& point)
 		return;
 	shadowReceiver.footprintKnown = true;
 
+	const double distance = (point - Vector3d(shadowReceiver.cameraRay->Origin)).length();
 	Ray neighbour;
 	for(int i = 0; i < 2; i++)
 	{
 		for(int k = 0; k < 3; k++)
 			shadowReceiver.footprint[i][k] = 0.0;
 		if(CameraRayBeside(i == 1, neighbour))
-			FootprintSide(*shadowReceiver.cameraRay, neighbour, point, shadowReceiver.surface.normal, shadowReceiver.footprint[i]);
+			FootprintSide(distance, neighbour, point, shadowReceiver.surface.normal, shadowReceiver.footprint[i]);
 	}
 }
 

@@ -46,13 +46,17 @@ static int by_size(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-static void fill(dsm_receiver *points, int coherent, int on_floor)
+static void fill(dsm_receiver *points, int coherent, int on_floor, double footprint)
 {
   rng r = rng_seeded(7);
   for (int i = 0; i < LOOKUPS; i++) {
     double x = coherent ? (i % SIDE) * 1.8 / SIDE - 0.9 : rng_between(&r, -0.9, 0.9);
     double y = coherent ? (i / SIDE) * 1.8 / SIDE - 0.9 : rng_between(&r, -0.9, 0.9);
     points[i] = (dsm_receiver){.point = {x, y, on_floor ? 3 : 1.5 + 0.3 * sin(9 * x) * cos(7 * y)}};
+    if (footprint > 0) {
+      points[i].has_footprint = 1;
+      points[i].footprint[0][0] = points[i].footprint[1][1] = footprint;
+    }
     if (on_floor) {
       points[i].plane_count = 2;
       points[i].planes[0] = (dsm_plane){{0.1, 0.2, -sqrt(0.95)}, 0};
@@ -112,9 +116,9 @@ int main(int argc, char **argv)
       || dsm_api.worker_create(map, NULL, &worker) != DSM_OK)
     return 1;
   printf("%10s %10s\n", "", "ns");
-  for (int k = 0; k < 4; k++) {
-    fill(points, k % 2 == 0, k / 2);
-    printf("%s, %s %6.1f\n", k / 2 ? "floor" : "air  ", k % 2 ? "random  " : "coherent", median_ns(worker, points));
+  for (int k = 0; k < 6; k++) {
+    fill(points, k % 2 == 0, k / 2, k / 2 == 2 ? 2.4 / resolution : 0);
+    printf("%s, %s %6.1f\n", k / 2 == 2 ? "seen " : k / 2 ? "floor" : "air  ", k % 2 ? "random  " : "coherent", median_ns(worker, points));
   }
   dsm_statistics s = {.size = sizeof s};
   dsm_api.statistics(map, &s);

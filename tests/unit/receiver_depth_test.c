@@ -35,6 +35,7 @@ static scene random_scene(rng *r, int perspective, double smallest, double large
   s.at.u = f->u0 + s.at.x * f->pixel_u;
   s.at.v = f->v0 + s.at.y * f->pixel_v;
   s.at.depth = rng_scale(r, 0.1, 1e4);
+  s.at.nearness = s.p.perspective ? sqrt(s.at.u * s.at.u + s.at.v * s.at.v + 1) / s.at.depth : 1;
   random_direction(r, s.bound.normal);
   for (int i = 0; i < 3; ++i) s.p.origin[i] = rng_between(r, -5, 5);
   dsm_ray ray;
@@ -45,7 +46,9 @@ static scene random_scene(rng *r, int perspective, double smallest, double large
 }
 
 static receiver_plane seen(const scene *s, double bias) {
-  return receiver_plane_seen(&s->p, &s->at, &s->bound, &(receiver_region){s->half, 1}, bias);
+  receiver_plane plane;
+  receiver_plane_seen(&s->p, &s->at, &s->bound, &(receiver_region){s->half, 1}, bias, &plane);
+  return plane;
 }
 
 /* How deep the plane is along the ray du, dv pixels off; perspective: negative where it is behind the light. */
@@ -138,9 +141,10 @@ static void edge_on(void **state) {
     for (int k = 0; k < 4; ++k) {
       projection p = {.perspective = perspective, .count = 1};
       p.faces[0] = (face){.axes = frame_along((double[]){0, 0, 1}), .pixel_u = 0.01, .pixel_v = 0.02};
-      projected at = {.depth = 7};
+      projected at = {.depth = 7, .nearness = perspective ? 1.0 / 7 : 1};
       dsm_plane bound = {{normals[k][0], normals[k][1], normals[k][2]}, 0};
-      receiver_plane plane = receiver_plane_seen(&p, &at, &bound, &(receiver_region){0.625, 1}, SETTING_AUTOMATIC);
+      receiver_plane plane;
+      receiver_plane_seen(&p, &at, &bound, &(receiver_region){0.625, 1}, SETTING_AUTOMATIC, &plane);
       if (perspective) assert_true(fabs(receiver_bias(&plane, 0, 0) - 7) < 1e-12);
       else if (k < 3) assert_true(receiver_bias(&plane, 0, 0) > 1e20);
       for (int d = 0; d < 9; ++d) {
