@@ -4,6 +4,7 @@
 // Truth: ray-traced.
 //
 // Declare=Cylinder=0   1: a cylinder light, which also ends at its own radius
+// Declare=Accuracy=0.01   that in place of resolution and samples
 // Declare=White=0      1: everything matte white, so that the picture shows the shadows alone
 #version 3.7;
 global_settings { assumed_gamma 1 }
@@ -22,7 +23,9 @@ light_source {
   <-8, 9, -5>, rgb <1.0, 0.95, 0.88>*1.1
   #if (Cylinder) cylinder radius 2.6 falloff 3.2 tightness 0 #else parallel #end
   point_at <0, 0.5, 0>
-  deep_shadow { resolution 1024 samples 16 }
+  deep_shadow {
+    #ifdef (Accuracy) accuracy Accuracy #else resolution 1024 samples 16 #end
+  }
 }
 
 background { rgb <0.42, 0.55, 0.72> }
