@@ -126,9 +126,9 @@ static dsm_result choose_first_rays(const bake_job *job, bake_scratch *s, const 
                                     const need_limits *limits, uint32_t *samples, tile_tally *tally)
 {
   sparse_outcome outcome = SPARSE_NEVER;
-  uint32_t casters = casters_above(job, key, 2);
+  uint32_t casters = casters_above(job, key, SPARSE_CASTERS + 1);
   *samples = 0;
-  dsm_result result = casters == 1 ? bake_sparsely(job, s, key, all, limits, &outcome, tally) : DSM_OK;
+  dsm_result result = casters >= 1 && casters <= SPARSE_CASTERS ? bake_sparsely(job, s, key, all, casters, limits, &outcome, tally) : DSM_OK;
   if (result != DSM_OK || casters == 0 || outcome == SPARSE_DONE)
     return result;
   if (outcome == SPARSE_NEVER)
@@ -158,7 +158,8 @@ static dsm_result bake_adaptively(const bake_job *job, bake_scratch *s, const ti
   const face *f = &job->projection->faces[key->face];
   double size = ldexp(fmax(f->pixel_u, f->pixel_v), (int)key->level);
   int perspective = job->projection->perspective;
-  need_limits limits = {perspective ? size : 0, perspective ? 0 : size, job->settings->accuracy};
+  need_limits limits = {perspective ? size : 0, perspective ? 0 : size, job->settings->accuracy,
+                        key->level >= first_level(job->settings)};
   dsm_result result = choose_rays(job, s, key, all, &limits, &samples, tally);
   if (result != DSM_OK || samples == 0)
     return result;

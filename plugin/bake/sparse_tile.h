@@ -15,6 +15,9 @@
 /* How many casters have a box that light of this tile may meet: `most` if there are more, or nobody knows. */
 uint32_t casters_above(const bake_job *job, const tile_key *key, uint32_t most);
 
+/* The most for which a tile may be sparse: a volume, and the ground under it. */
+enum { SPARSE_CASTERS = 2 };
+
 typedef enum {
   SPARSE_NEVER,   /* there are surfaces, or nothing */
   SPARSE_BENT,    /* volumes alone, but too much lies between the pixels */
@@ -23,7 +26,7 @@ typedef enum {
 
 /* Bakes some of the pixels from one ray each, more of them if those are not enough, and makes the others. Nothing is kept unless all is done.
  * To be tried where there is one caster: what is thin is missed. `whole` are all pixels that lie on the face. */
-dsm_result bake_sparsely(const bake_job *job, bake_scratch *scratch, const tile_key *key, const place_list *whole,
+dsm_result bake_sparsely(const bake_job *job, bake_scratch *scratch, const tile_key *key, const place_list *whole, uint32_t casters,
                          const need_limits *limits, sparse_outcome *outcome, tile_tally *tally);
 
 #endif

@@ -13,7 +13,7 @@ enum { EVEN = 8, RANKED = 8, DEPTHS = EVEN + RANKED + 1, MOST_RANKED = 512 };
 static const double SQUARED_BENDS = 8;
 
 /* As for the noise: of the root mean square over a picture, what is bent may have more. */
-static const double BEND_SHARE = 2;
+static const double BEND_SHARE = 4;
 
 /* Of the variance that noise is thought to have. A few rays that an edge parts look as if they knew nothing of each other, though they
  * are stratified: the rest of what they bend is taken for an edge. */
@@ -23,8 +23,16 @@ static const double NOISE_KNOWN = 0.1;
 static const double SMOOTH = 8;
 
 /* Lines of few pixels may bend by so many times the aim, root mean square. An eighth of that is missed between them; a step less than as
- * high is taken for a curve. */
-static const double SPARSE_BEND = 12;
+ * high is taken for a curve. Less where it is seen on a ground, as a shadow's rim. */
+static const double SPARSE_BEND = 16;
+static const double GROUND_BEND = 6;
+
+/* Pixel widths by which a surface may stand out of the line through its neighbours (measured: with more, fluted columns of scenes/parallel_light.pov
+ * are missed). Planes do so by chance where light meets them at more than about 45 degrees, as rays lie anywhere in their pixels. */
+static const double ROUGH = 1;
+
+/* What that counts as, in units of what is let pass: enough for all of a finer level, also as a mean with eight neighbours of no need. */
+static const double ROUGH_ERROR = 50;
 
 /* Less light than this behind everything: the last surface is opaque, a ground on which shadows are seen. */
 static const double DARK = 0.02;
@@ -206,6 +214,45 @@ static int is_bent(const double most[TILE_PIXELS], uint32_t place, double least)
   return 0;
 }
 
+/* The depth behind which less than half of the light is left; infinite: there is none. */
+static double surface_of(const baked_pixel *p, const vertices *stored)
+{
+  const vertex *v = stored->data + p->first;
+  if (p->volume || !is_known(p))
+    return INFINITY;
+  for (size_t k = 0; k < p->count; k++)
+    if (rgb_max(v[k].v) < 0.5)
+      return v[k].z;
+  return INFINITY;
+}
+
+/* Whether it stands out of the line through its neighbours' by so much that it may shadow them. */
+static int is_rough(const double depth[TILE_PIXELS], const need_limits *limits, uint32_t i)
+{
+  for (uint32_t axis = 0; axis < 2; axis++) {
+    uint32_t at = axis ? i / TILE_SIDE : i % TILE_SIDE, step = axis ? TILE_SIDE : 1;
+    if (at == 0 || at == TILE_SIDE - 1)
+      continue;
+    double bend = fabs(depth[i - step] + depth[i + step] - 2 * depth[i]);
+    if (bend > ROUGH * width_at(limits, depth[i]) && bend < INFINITY)
+      return 1;
+  }
+  return 0;
+}
+
+/* Grooves no wider than a pixel bend no visibility at any one depth, as each depth counts with a pixel's width around it. At the first level
+ * alone: finer ones would find the same again and again on whatever is slanted. */
+static void keep_rough(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits, double least,
+                       double most[TILE_PIXELS])
+{
+  double depth[TILE_PIXELS];
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    depth[i] = surface_of(&pixels[i], stored);
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    if (is_rough(depth, limits, i))
+      most[i] = fmax(most[i], ROUGH_ERROR * least);
+}
+
 static unsigned char need_of(double times)
 {
   return times > 1 ? (unsigned char)fmin(NEED_MOST, 1 + NEED_OCTAVE * log2(times)) : 0;
@@ -231,6 +278,8 @@ void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const ne
   }
   for (uint32_t i = 0; i < TILE_PIXELS; i++)
     most[i] = most[i] > -INFINITY ? most[i] : 0;
+  if (limits->first)
+    keep_rough(pixels, stored, limits, least, most);
   for (uint32_t i = 0; i < TILE_PIXELS; i++) {
     pixels[i].need = pixels[i].marked ? NEED_ALWAYS : 0;
     if (is_known(&pixels[i]) && is_bent(most, i, least))
@@ -251,9 +300,10 @@ static double mean_bend(const layer *l, const sparse_grid *grid)
   return sum / (grid->side * (grid->side - 2));
 }
 
-int sparse_is_enough(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits, const sparse_grid *grid)
+int sparse_is_enough(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits, const sparse_grid *grid,
+                     int ground)
 {
-  double depths[DEPTHS], most = SPARSE_BEND * limits->aim;
+  double depths[DEPTHS], most = (ground ? GROUND_BEND : SPARSE_BEND) * limits->aim;
   uint32_t count = choose_depths(pixels, stored, depths);
   int channels = has_colour(pixels) ? 3 : 1;
   layer l;

@@ -20,6 +20,7 @@
 typedef struct {
   double width, width_at_least;   /* of a pixel at depth z: width * z + width_at_least */
   double aim;                     /* error, root mean square over a picture */
+  int first;                      /* whether no coarser level has been looked at */
 } need_limits;
 
 /* Some pixels of a tile, on lines across and up: columns and rows rise from 0 to the last of the pixels that count. */
@@ -34,9 +35,9 @@ static inline uint32_t sparse_place(const sparse_grid *grid, uint32_t i, uint32_
   return grid->y[j] * TILE_SIDE + grid->x[i];
 }
 
-/* Whether what lies between these pixels can be interpolated. The others have no vertices. */
+/* Whether what lies between these pixels can be interpolated, in front of a ground or where there is none. The others have no vertices. */
 int sparse_is_enough(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits,
-                     const sparse_grid *grid);
+                     const sparse_grid *grid, int ground);
 
 /* Sets `need` of all pixels of a tile from their vertices and variance, as map/tile.h describes it: 0 where interpolation is good
  * enough. */

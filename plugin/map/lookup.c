@@ -12,6 +12,10 @@ enum { FOOTPRINT_LEVEL = 5 };
 enum { REFINED_PROBES = 4,
        BLIND_LEVELS = 2 };   /* finer than the first, at most, for points without a footprint: media, and what is seen in mirrors */
 
+/* The light of a cube is among what casts its shadows, and they fill the picture: pixels that are read are so many times smaller in area
+ * (measured). Not where `blur` wants them as large as they are. */
+static const double IN_CUBES = 1.0 / 16;
+
 /* Where so much is lost by all pixels together, those that are blind are not believed. */
 static const double SHADOWED = 0.02;
 
@@ -65,8 +69,10 @@ static footprint choose(const view *v, int has_footprint)
     most = levels - 1;
   if (map->first_level == 0)
     return footprint_of(&region, most, alone && has_footprint ? FOOTPRINT_PROBES : 1);
-  footprint f = footprint_of(&region, most, alone && has_footprint ? REFINED_PROBES : 1);
-  f = footprint_scaled(f, has_footprint ? map->coarser : 1, most);
+  footprint f = footprint_of(&region, most, has_footprint ? REFINED_PROBES : 1);
+  f = footprint_scaled(f, has_footprint ? map->coarser * (alone || map->blur > 0 ? 1 : IN_CUBES) : 1, most);
+  if (!alone)
+    f = (footprint){f.level, f.coarser, 1, 0, 0};   /* beside the face a look-up would find nothing */
   if (!has_footprint && f.level + BLIND_LEVELS < map->first_level)
     f = (footprint){map->first_level - BLIND_LEVELS, 0, 1, 0, 0};
   return f;

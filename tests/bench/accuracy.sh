@@ -3,7 +3,7 @@
 # What the word `accuracy` reaches and costs, beside fixed maps: error of the shadow, light rays traced for it, and CPU seconds of
 # all threads for map and picture, without reading the scene.
 #
-#   tests/bench/accuracy.sh [SCENE...]      glass hairball cloud cloud_pipes volume; ten minutes
+#   tests/bench/accuracy.sh [SCENE...]      glass hairball cloud cloud_pipes volume parallel_light point_light; a quarter of an hour
 #
 # The reference is a fixed map, fine and with many rays, under the same camera rays: so the difference is what coarser pixels
 # and fewer rays make, and nothing else. (It flatters fixed maps as fine as the reference itself, whose pixels blur alike.)
@@ -14,6 +14,8 @@ set -eu
 : "${AIMS:=0.02 0.01 0.005}" "${FIXED:=64,4 128,4 128,16 256,4 256,16 512,4 512,16 1024,4}" "${CHOSEN:=0.01}"
 : "${PICTURE_glass:=160:120:3:0:0:160:120}" "${PICTURE_hairball:=160:120:3:49:65:61:40}"
 : "${PICTURE_cloud:=120:90:2:0:0:120:90}" "${PICTURE_cloud_pipes:=120:90:2:0:0:120:90}" "${PICTURE_volume:=120:90:2:0:0:120:90}"
+: "${PICTURE_parallel_light:=160:120:3:0:0:160:120}" "${PICTURE_point_light:=160:120:3:0:0:160:120}"
+: "${REFERENCE_parallel_light:=2048,16}" "${REFERENCE_point_light:=2048,16}"
 : "${REFERENCE_glass:=1024,64}" "${REFERENCE_hairball:=1024,64}" "${REFERENCE_cloud:=512,16}" "${REFERENCE_cloud_pipes:=2048,16}" "${REFERENCE_volume:=1024,16}"
 out=$top/build/accuracy
 mkdir -p "$out"
@@ -63,7 +65,7 @@ verdict() {  # $1: scene
     }' "$out/$1.txt"
 }
 
-for scene in "${@:-glass hairball cloud cloud_pipes volume}"; do for scene in $scene; do
+for scene in "${@:-glass hairball cloud cloud_pipes volume parallel_light point_light}"; do for scene in $scene; do
   reference=REFERENCE_$scene part=PICTURE_$scene
   about="${!reference} ${!part} $(cat "$POVRAY" "$(dirname "$POVRAY")"/../lib/povray-3.7/*.so "$top/scenes/$scene.pov" | sha256sum)"
   if [ ! -s "$out/$scene-reference.exr" ] || [ "$about" != "$(cat "$out/$scene-reference.of" 2>/dev/null)" ]; then

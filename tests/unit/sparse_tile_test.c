@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* Tiles of few pixels: those between are what the fog's closed form says; edges, second casters and surfaces are not passed over. */
+/* Tiles of few pixels: those between are what the fog's closed form says; edges, second casters and surfaces are not passed over,
+ * but for a flat ground, whose depths are a plane's. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,10 +16,10 @@ static wanted_pixels all_wanted;   /* set in main */
 
 typedef struct { stage s; const tile *t; tile_tally tally; } one_tile;
 
-/* Light along z, 128 pixels along a face. Of the casters so many are told of. */
-static one_tile bake(const shape *shapes, int count, const char *accuracy, uint32_t x, uint32_t y, uint64_t known) {
+/* 128 pixels along a face. Of the casters so many are told of. */
+static one_tile bake_from(dsm_light from, const shape *shapes, int count, const char *accuracy, uint32_t x, uint32_t y, uint64_t known) {
   one_tile out = {.tally = {0}};
-  stage_open(&out.s, shapes, count, parallel_at(0, 0, 0, 0, 0, 1), WORDS(accuracy, "resolution 128"));
+  stage_open(&out.s, shapes, count, from, WORDS(accuracy, "resolution 128"));
   dsm_map *map = out.s.map;
   dsm_light light = map->light;
   light.caster_count = known;
@@ -28,6 +29,11 @@ static one_tile bake(const shape *shapes, int count, const char *accuracy, uint3
   assert_int_equal(bake_tile(&job, &scratch, &key, &all_wanted, &out.t, &out.tally), DSM_OK);
   bake_scratch_free(&scratch);
   return out;
+}
+
+/* Light along z. */
+static one_tile bake(const shape *shapes, int count, const char *accuracy, uint32_t x, uint32_t y, uint64_t known) {
+  return bake_from(parallel_at(0, 0, 0, 0, 0, 1), shapes, count, accuracy, x, y, known);
 }
 
 static void done(one_tile *tested) {
@@ -114,6 +120,57 @@ static void surfaces_are_not_interpolated(void **state) {
   done(&tested);
 }
 
+/* Where light through a pixel's middle meets the sheet. */
+static double sheet_depth(const stage *s, const shape *sheet, uint32_t x, uint32_t y) {
+  dsm_ray ray;
+  projection_ray(&s->map->projection, 0, x + 0.5, y + 0.5, &ray);
+  return (sheet->box.low[2] - ray.origin[2]) / ray.direction[2];
+}
+
+/* A ground ends all light where its plane says, slanted and in perspective too, and what is in front of it stays: alone it takes 64 rays
+ * (and 16 before), under a fog 16. */
+static void flat_ground_takes_few_rays(void **state) {
+  (void)state;
+  shape things[] = {sheet_at(5, 2, 0, 0, 0), fog_of(-2, 2, 0)};
+  const dsm_light lights[] = {parallel_at(0, 0, 0, 0, 0, 1), parallel_at(-1, 0, 0, 0.5, 0.1, 1), parallel_at(-4, 0, 0, 0.9, 0.1, 1), spot_at(-6, 0.5, 0, 1.2, 0, 1, 30)};
+  for (int kind = 0; kind < 4; ++kind)
+    for (int fog = 0; fog < (kind < 2 ? 2 : 1); ++fog) {   /* light of the others comes through the sides of the fog */
+      one_tile tested = bake_from(lights[kind], things, 1 + fog, "accuracy 0.01", 3, 4, 1 + (uint64_t)fog);
+      if (tested.tally.rays != (fog ? 16 : 80)) fail_msg("light %d, fog %d: %u rays", kind, fog, (unsigned)tested.tally.rays);
+      for (uint32_t i = 0; i < TILE_PIXELS; ++i) {
+        double z = sheet_depth(&tested.s, things, 3 * TILE_SIDE + i % TILE_SIDE, 4 * TILE_SIDE + i / TILE_SIDE), pixel = 4.0 / 128;
+        visibility stored = tile_visibility(tested.t, i);
+        uint32_t hint = 0;
+        double before = visibility_at(&stored, z - 0.1 * pixel - tested.t->near_depth, &hint).c[0];
+        double behind = visibility_at(&stored, z + 0.1 * pixel - tested.t->near_depth, &hint).c[0];
+        if (fog ? before > 0.9 || before < 0.3 : before < 1) fail_msg("light %d, pixel %u: %g in front of the ground", kind, i, before);
+        if (behind > 0) fail_msg("light %d, pixel %u: %g behind the ground", kind, i, behind);
+      }
+      done(&tested);
+    }
+}
+
+/* Not where something else may be, nor where it ends, nor where it lets light through. */
+static void what_is_no_flat_ground_is_baked(void **state) {
+  (void)state;
+  shape things[] = {sheet_at(5, 2, 0, 0, 0), sphere_at(0.3, 0.3, 3, 0.002, 0)}, ball = sphere_at(0, 0, 5, 2, 0);
+  one_tile tested = bake(things, 2, "accuracy 0.01", 3, 4, 2);
+  assert_true(tested.tally.rays == 80 || tested.tally.rays >= 256);
+  projected hits[3];
+  assert_int_equal(projection_find(&tested.s.map->projection, (double[]){0.3, 0.3, 3}, 0, hits), 1);
+  uint32_t x = (uint32_t)hits[0].x / TILE_SIDE, y = (uint32_t)hits[0].y / TILE_SIDE;
+  done(&tested);
+  tested = bake(things, 2, "accuracy 0.01", x, y, 2);
+  assert_true(tested.tally.rays >= 256);
+  done(&tested);
+  tested = bake(things, 1, "accuracy 0.01", 0, 4, 1);
+  assert_true(tested.tally.rays >= 256);
+  done(&tested);
+  tested = bake(&ball, 1, "accuracy 0.01", 2, 3, 1);
+  assert_true(tested.tally.rays >= 256);
+  done(&tested);
+}
+
 /* Where no caster's box is, nothing is traced. */
 static void light_is_free(void **state) {
   (void)state;
@@ -132,6 +189,8 @@ int main(void) {
     cmocka_unit_test(smooth_fog_takes_few_rays),
     cmocka_unit_test(edges_are_found),
     cmocka_unit_test(surfaces_are_not_interpolated),
+    cmocka_unit_test(flat_ground_takes_few_rays),
+    cmocka_unit_test(what_is_no_flat_ground_is_baked),
     cmocka_unit_test(light_is_free),
   };
   memset(&all_wanted, 1, sizeof all_wanted);

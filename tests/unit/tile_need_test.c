@@ -12,7 +12,7 @@
 
 static baked_pixel pixels[TILE_PIXELS];
 static vertices stored;
-static const need_limits LIMITS = {0, 0.1, 0.01};   /* pixels 0.1 wide */
+static const need_limits LIMITS = {0, 0.1, 0.01, 1};   /* pixels 0.1 wide */
 
 /* A surface at depth z behind which `left` is left. */
 static void put(uint32_t i, double z, double before, double left) {
@@ -63,6 +63,17 @@ static void slanted_ground_is_no_edge(void **state) {
     }
     tile_need(pixels, &stored, &LIMITS);
     assert_int_equal(largest(), 0);
+  }
+}
+
+/* Grooves as narrow as pixels and nearly as deep shadow themselves, which no depth by itself tells. */
+static void grooves_want_more(void **state) {
+  (void)state;
+  for (int deep = 0; deep < 2; ++deep) {
+    begin();
+    for (uint32_t i = 0; i < TILE_PIXELS; ++i) put(i, 5 + (i % 2 ? 0.06 : 0.02) * (1 + deep), 1, 0);
+    tile_need(pixels, &stored, &LIMITS);
+    for (uint32_t i = 0; i < TILE_PIXELS; ++i) assert_int_equal(pixels[i].need > NEED_OCTAVE, deep);
   }
 }
 
@@ -143,7 +154,8 @@ static void few_pixels_are_enough_without_steps(void **state) {
           if (kind == 3) stored.data[pixels[i].first + 1].v = (rgb){{0.8, 0.8, step}};
           pixels[i].coloured = kind == 3;
         }
-        assert_int_equal(sparse_is_enough(pixels, &stored, &LIMITS, &grid), kind < 2);
+        assert_int_equal(sparse_is_enough(pixels, &stored, &LIMITS, &grid, 0), kind < 2);
+        assert_int_equal(sparse_is_enough(pixels, &stored, &LIMITS, &grid, 1), kind < 2);
       }
   vertices_free(&stored);
 }
@@ -153,6 +165,7 @@ int main(void) {
     cmocka_unit_test(nothing_wants_nothing),
     cmocka_unit_test(straight_is_enough),
     cmocka_unit_test(slanted_ground_is_no_edge),
+    cmocka_unit_test(grooves_want_more),
     cmocka_unit_test(an_edge_wants_more),
     cmocka_unit_test(an_edge_at_the_border_wants_more),
     cmocka_unit_test(unknown_pixels),
