@@ -87,14 +87,16 @@ static double step_of_a_ray(const dsm_settings *settings, uint32_t level)
   return settings->tolerance < 0 ? 1.01 / ldexp(settings->samples, 2 * (int)level) : 0;
 }
 
-static void set_rounding(pyramid_scratch *s, const projection *p, const tile_key *key)
+static void set_rounding(pyramid_scratch *s, const dsm_map *map, const tile_key *key)
 {
+  uint32_t halvings = key->level - map->first_level;
   double least = INFINITY;
   for (int q = 0; q < 4; q++)
     if (s->children[q] && s->children[q]->tolerance > 0)
       least = fmin(least, (double)s->children[q]->tolerance);
   double tolerance = s->least_tolerance = least < INFINITY ? halved(least * least, 1) : 0;
-  s->rule = tolerance > 0 ? rounding_for(p, key->face, key->level, rounding_value_bits(tolerance), tolerance) : rounding_least();
+  s->rule = tolerance > 0 ? rounding_for(&map->projection, key->face, key->level, halvings, rounding_value_bits(tolerance), tolerance)
+                          : rounding_least();
 }
 
 static dsm_result make_pixels(pyramid_scratch *s, const tile **out)
@@ -148,7 +150,7 @@ dsm_result pyramid_make(dsm_worker *worker, const tile_key *key, const tile **ou
   for (int q = 0; q < 4; q++)
     s->children[q] = children[q];
   s->ray_step = step_of_a_ray(&worker->map->settings, key->level);
-  set_rounding(s, &worker->map->projection, key);
+  set_rounding(s, worker->map, key);
   result = make_pixels(s, out);
   vertices_free(&s->parts);
   vertices_free(&s->average);
