@@ -2,8 +2,8 @@
 /*
  * How far the numbers of stored vertices may be rounded.
  *
- *   Values    in as few bits as keep the rounding within two 15ths of the tolerance, for which compression leaves room.
- *             More rounding would cost more in vertices than it spares in bits (measured: hair).
+ *   Values    in as few bits as keep the rounding within four 15ths of the tolerance. Compression leaves room for it, mostly for a
+ *             quarter of it: see compress_lattice.c. More rounding would cost more in vertices than it spares in bits (measured: hair).
  *   Depths    to multiples of a quantum. A pixel has seen all that lies within its own width, so where along its
  *             rays a surface was need not be known better by far: quanta take up to 16 tolerances of the pixel's width, and at
  *             most a 16th of it; but 4 where values have all their bits, as the tolerance asked for is finer than what rays tell.
@@ -21,7 +21,7 @@
 #include "core/projection.h"
 #include "core/visibility.h"
 
-static const double ROUNDING_OF_VALUES = 2.0 / 15, ROUNDING_OF_DEPTHS = 1.0 / 16;   /* of the tolerance */
+static const double ROUNDING_OF_VALUES = 4.0 / 15, ROUNDING_OF_DEPTHS = 1.0 / 16;   /* of the tolerance */
 
 /* Of one tile. */
 typedef struct {
@@ -44,10 +44,10 @@ static inline uint32_t rounding_value_bits(double tolerance)
   return bits;
 }
 
-/* What it takes of the tolerance. */
-static inline double rounding_spent(uint32_t value_bits, int volume, double tolerance)
+/* What that of depths takes of the tolerance. */
+static inline double rounding_of_depths(int volume, double tolerance)
 {
-  return rounding_of_bits(value_bits) + (volume ? ROUNDING_OF_DEPTHS * tolerance : 0);
+  return volume ? ROUNDING_OF_DEPTHS * tolerance : 0;
 }
 
 /* Nothing is rounded but to floats and 65535ths. */
