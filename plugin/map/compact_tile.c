@@ -9,7 +9,7 @@
 enum { NO_BIT = 1000 };   /* above all of a float */
 
 /* Look-ups take longer in deltas, so these have to take fewer bytes than this share of what absolute records take. */
-static const double DELTAS_SPARE = 0.9;
+static const double DELTAS_SPARE = 0.8;
 
 /* The lowest bit of a depth >= 0, as the exponent of 2. */
 static int lowest_bit(float depth)
