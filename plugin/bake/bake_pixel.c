@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/compress.h"
+#include "core/compress_lattice.h"
 #include "core/rounding.h"
 #include "core/thin.h"
 #include "core/transmittance.h"
@@ -184,8 +184,9 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   }
   double tolerance = finest_tolerance(job->settings);
   pixel->tolerance = is_a_guess(job, samples, events) ? noise_ceiling(1) : fmax(pixel->tolerance, tolerance);
-  double spent = rounding_spent(bake_value_bits(job->settings), kind.volume, tolerance) + (kind.volume ? spent_on_volume(job->settings) : 0);
-  result = compressed ? append(clean, stored) : compress_minimal_after(clean->data, clean->count, channels, tolerance, spent, stored);
+  double spent = rounding_of_depths(kind.volume, tolerance) + (kind.volume ? spent_on_volume(job->settings) : 0);
+  result = compressed ? append(clean, stored)
+                      : compress_rounded(clean->data, clean->count, channels, tolerance, spent, bake_value_bits(job->settings), stored);
   pixel->count = stored->count - pixel->first;
   return result;
 }

@@ -194,7 +194,7 @@ dsm_result bake_tile(const bake_job *job, bake_scratch *s, const tile_key *key, 
   *out = NULL;
   dsm_result result = bake_pixels(job, s, key, wanted, tally);
   double tolerance = finest_tolerance(job->settings);
-  rounding rule = tolerance > 0 ? rounding_for(job->projection, key->face, key->level, bake_value_bits(job->settings), tolerance)
+  rounding rule = tolerance > 0 ? rounding_for(job->projection, key->face, key->level, 0, bake_value_bits(job->settings), tolerance)
                                 : rounding_least();
   if (result == DSM_OK)
     result = pack_tile(s->pixels, &s->stored, &rule, out);

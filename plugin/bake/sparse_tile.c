@@ -5,7 +5,7 @@
 
 #include "bake/flat_ground.h"
 #include "core/box_outline.h"
-#include "core/compress.h"
+#include "core/compress_lattice.h"
 #include "core/rounding.h"
 
 /* Baked pixels along a side, from few to more. */
@@ -185,8 +185,8 @@ static dsm_result fill_pixel(const bake_job *job, bake_scratch *s, const tile_ke
   double tolerance = finest_tolerance(job->settings);
   baked_pixel *out = &s->pixels[y * TILE_SIDE + x];
   *out = (baked_pixel){.first = s->stored.count, .coloured = coloured, .volume = volume, .surface = ground->known, .tolerance = 2 * tolerance};
-  result = compress_minimal_after(s->pixel.average.data, s->pixel.average.count, coloured ? 3 : 1, tolerance,
-                                  rounding_spent(bake_value_bits(job->settings), 1, tolerance), &s->stored);
+  result = compress_rounded(s->pixel.average.data, s->pixel.average.count, coloured ? 3 : 1, tolerance, rounding_of_depths(1, tolerance),
+                            bake_value_bits(job->settings), &s->stored);
   out->count = s->stored.count - out->first;
   return result;
 }

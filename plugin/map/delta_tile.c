@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Records of a pixel; a look-up reads half of them on average. */
-enum { LONGEST = 192 };
+enum { LONGEST = 500 };
 
 /* Look-ups are slow where records are no vertices, so such a record is as bad as this many. */
 enum { ADDING_COSTS = 2 };

@@ -10,7 +10,7 @@
  * Where pixels begin: 32 times 16 bits, of every eighth pixel, and 256 bytes, how many records each has; where that
  * is not enough, 257 times 32 bits.
  *
- * A grey vertex takes one and a half to two bytes in most maps that have a tolerance, 11 to 16 bits and now and then as many again
+ * A grey vertex takes one and a half to two bytes in most maps that have a tolerance, 10 to 16 bits and now and then as many again
  * (delta_records.h); in pixels that are long, coloured, or of noise with values of 16 bits, 3 to 6 bytes (visibility.h), and twice as
  * many where it is coloured. For how many bits its numbers need see rounding.h. Its depth is relative to the tile's near
  * depth, a double: the nearest vertex of the tile itself, so that the digits cover the tile's range of depths and not the

@@ -49,7 +49,7 @@ static void pixels_are_their_rays_average(void **state) {
     for (int probe = 0; probe < 400; ++probe) {
       uint32_t px = rng_below(&r, TILE_SIDE), py = rng_below(&r, TILE_SIDE);
       double z = rng_between(&r, 1.9, 5), most[3] = {0, 0, 0}, least[3] = {0, 0, 0};
-      rounding rule = rounding_for(&s.map->projection, 0, 0, VALUE_BITS, limits[k % 3]);
+      rounding rule = rounding_for(&s.map->projection, 0, 0, 0, VALUE_BITS, limits[k % 3]);
       double moved = k < 6 ? 0 : rule.quantum * (rule.perspective ? z : 1);   /* in fog it is part of the tolerance */
       for (uint32_t i = 0; i < RAYS; ++i) {
         pixel_filter filter = {FILTER_BOX, 1};

@@ -12,7 +12,7 @@
 #include "map/delta_tile.h"
 #include "random.h"
 
-enum { MOST = 193 };
+enum { MOST = 501 };
 
 /* Pixels as codes, and the tile that tells them in deltas; NULL: there is none. */
 typedef struct {
@@ -190,7 +190,7 @@ static void whatever_a_pixel_begins_or_ends_with(void **state) {
   free(p);
 }
 
-/* Of 192 records; there is no such tile of one more, nor of colours, nor of values that grow. */
+/* Of 500 records; there is no such tile of one more, nor of colours, nor of values that grow. */
 static void limits(void **state) {
   (void)state;
   rng r = rng_seeded(2);
@@ -198,17 +198,17 @@ static void limits(void **state) {
   for (uint32_t kind = 0; kind < 4; ++kind) {
     memset(p, 0, sizeof *p);
     p->quantum = 1;
-    p->value_bits = 8;
-    p->count[255] = 192 + (kind == 1);
+    p->value_bits = 9;
+    p->count[255] = 500 + (kind == 1);
     for (uint32_t k = 0; k < MOST; ++k) {
       p->depth[255][k] = 3 * k;
-      p->value[255][k] = 255 - k + (kind == 3 && k == 40 ? 2 : 0);
+      p->value[255][k] = 511 - k + (kind == 3 && k == 40 ? 2 : 0);
     }
     p->coloured[255] = kind == 2;
     make(p);
     assert_true((p->deltas == NULL) == (kind > 0));
     if (!p->deltas) continue;
-    assert_true(tile_records(p->deltas, 255) == 192);
+    assert_true(tile_records(p->deltas, 255) == 500);
     check_numbers(&r, p);
     check_look_ups(&r, p, 20000);
     tile_destroy(p->deltas);

@@ -102,7 +102,7 @@ static void error_of_each_level(void **state) {
       double worst = 0, sum = bound[k] * (2 - ldexp(1, -(int)level));
       double moved = FLOATS;
       for (uint32_t l = 0; l <= level; ++l)
-        moved += rounding_for(&rough.map->projection, 0, l, rounding_value_bits(ldexp(bound[k], -(int)l)), ldexp(bound[k], -(int)l)).quantum;
+        moved += rounding_for(&rough.map->projection, 0, l, l, rounding_value_bits(ldexp(bound[k], -(int)l)), ldexp(bound[k], -(int)l)).quantum;
       for (uint32_t y = 0; y < level_pixels(f->height, level); ++y)
         for (uint32_t x = 0; x < level_pixels(f->width, level); ++x) {
           uint32_t place;
