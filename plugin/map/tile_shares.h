@@ -15,7 +15,7 @@
 
 struct tile_maker;
 
-enum { MOST_SHARES = 8 };
+enum { MOST_SHARES = 4 };
 
 typedef struct tile_shares {
   uint32_t count;
