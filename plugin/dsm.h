@@ -126,7 +126,7 @@ typedef struct {
   /* [any worker, one thread a worker] Report all that dims each of the `count` rays between its two depths, in any
    * order, to `sink` (sink_surface, sink_span, sink_mark). `tolerance` is the largest error of transmittance
    * that matters: spans may be as long as light falls exponentially within them to that precision. A batch is
-   * a set of neighbouring rays of one light. Returns DSM_OK, DSM_CANCELLED or DSM_NO_MEMORY. */
+   * a set of neighbouring rays of one light; several workers may trace batches of one tile at a time. Returns DSM_OK, DSM_CANCELLED or DSM_NO_MEMORY. */
   dsm_result (*trace)(void *worker_data, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink);
 
   /* Called often, at least every 20 ms, while the library works or waits. Nonzero asks it to give up. */
@@ -212,7 +212,7 @@ typedef struct {
   dsm_result (*worker_create)(dsm_map *map, void *worker_data, dsm_worker **worker);   /* [any] */
   void (*worker_destroy)(dsm_worker *worker);                                 /* [one] */
 
-  /* How much light reaches the receiver: `rgb` in [0,1], 1 is unshadowed. Bakes the tiles it needs, or waits for
+  /* How much light reaches the receiver: `rgb` in [0,1], 1 is unshadowed. Bakes the tiles it needs, or helps and waits for
    * the thread that does. A deep map is filtered over the pixels around the point (LV 3.4). Of a depth map a number of
    * pixels around the point are compared, at places that are a hash of the point (RSC figure 4); it knows nothing of planes, and
    * all of `rgb` is one number. `rgb` is set when the result is DSM_OK or DSM_OUTSIDE and untouched otherwise. */

@@ -6,7 +6,8 @@
 
 #include "bake/seconds.h"
 
-enum { BATCH_RAYS = 4096 };   /* enough for a host to sort its objects by; a quarter of a megabyte of rays */
+/* Of a batch, at most unless one pixel has more: a quarter of a megabyte. Of a share, at least: enough for a host to sort its objects by. */
+enum { BATCH_RAYS = 4096, SHARE_RAYS = 256 };
 
 static int paused(const bake_job *job)
 {
@@ -67,23 +68,102 @@ static dsm_result trace_batch(const bake_job *job, bake_scratch *s, uint32_t sam
   return result == DSM_OK ? sink_order(&s->sink) : result;
 }
 
+/* A pass in shares. The last ones may be smaller, or empty. */
+typedef struct {
+  tile_shares shares;   /* first: shares of ours are the pass that begins with them */
+  const tile_key *key;
+  const place_list *places;
+  uint32_t samples, share_pixels;
+  bake_scratch *out;    /* of the thread whose tile it is */
+} pass;
+
+static uint32_t smaller(uint32_t a, uint32_t b)
+{
+  return a < b ? a : b;
+}
+
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+  return a > b ? a : b;
+}
+
+static uint32_t past_share(const pass *p, uint32_t share)
+{
+  return smaller((share + 1) * p->share_pixels, p->places->count);
+}
+
+static dsm_result bake_batches(const pass *p, const bake_job *job, bake_scratch *s, uint32_t share)
+{
+  uint32_t past = past_share(p, share), samples = p->samples;
+  uint32_t batch = smaller(p->share_pixels, larger(BATCH_RAYS / samples, 1));
+  baked_share *out = &p->out->shares[share];
+  noise_limits limits = limits_of(job, p->key->face, p->key->level, samples);
+  dsm_result result = make_room(s, samples, batch * samples);
+  for (uint32_t done = share * p->share_pixels; result == DSM_OK && done < past; done += batch) {
+    uint32_t count = smaller(batch, past - done);
+    const uint8_t *place = p->places->place + done;
+    for (uint32_t i = 0; i < count; i++)
+      make_rays(job, p->key, place[i], s->path, samples, s->rays + (size_t)i * samples);
+    result = paused(job) ? DSM_CANCELLED : trace_batch(job, s, samples, count * samples, &out->tally);
+    for (uint32_t i = 0; i < count && result == DSM_OK; i++)
+      result = paused(job) ? DSM_CANCELLED
+                           : bake_pixel(job, &s->pixel, &s->sink, &limits, i * samples, samples, &out->stored,
+                                        &p->out->pixels[place[i]], &out->tally);
+  }
+  return result;
+}
+
+static dsm_result bake_share(const pass *p, const bake_job *job, bake_scratch *s, uint32_t share)
+{
+  double start = seconds();
+  uint64_t dropped = s->sink.dropped, clamped = s->sink.clamped;
+  baked_share *out = &p->out->shares[share];
+  out->stored.count = 0;   /* a helper may have given it up */
+  out->tally = (tile_tally){0};
+  dsm_result result = bake_batches(p, job, s, share);
+  out->tally.events_dropped = s->sink.dropped - dropped;
+  out->tally.events_clamped = s->sink.clamped - clamped;
+  if (s != p->out)   /* else it is a part of what the tile takes */
+    out->tally.bake_seconds = seconds() - start;
+  return result;
+}
+
+static dsm_result make_share(tile_shares *shares, tile_maker *maker, uint32_t share)
+{
+  pixel_baker *b = (pixel_baker *)(void *)maker;
+  return bake_share((const pass *)(const void *)shares, &b->job, &b->scratch, share);
+}
+
+/* Puts the shares together. */
+static dsm_result gather(const pass *p, uint32_t share, tile_tally *tally)
+{
+  const baked_share *from = &p->out->shares[share];
+  for (uint32_t i = share * p->share_pixels; i < past_share(p, share); i++)
+    p->out->pixels[p->places->place[i]].first += p->out->stored.count;
+  tile_tally_add(tally, &from->tally);
+  return append_vertices(&from->stored, &p->out->stored);
+}
+
 dsm_result bake_pass(const bake_job *job, bake_scratch *s, const tile_key *key, uint32_t samples,
                      const place_list *places, tile_tally *tally)
 {
-  uint32_t batch = samples < BATCH_RAYS ? BATCH_RAYS / samples : 1;
-  if (batch > places->count)
-    batch = places->count;
-  noise_limits limits = limits_of(job, key->face, key->level, samples);
-  dsm_result result = make_room(s, samples, batch * samples);
-  for (uint32_t done = 0; result == DSM_OK && done < places->count; done += batch) {
-    uint32_t count = batch < places->count - done ? batch : places->count - done;
-    for (uint32_t i = 0; i < count; i++)
-      make_rays(job, key, places->place[done + i], s->path, samples, s->rays + (size_t)i * samples);
-    result = paused(job) ? DSM_CANCELLED : trace_batch(job, s, samples, count * samples, tally);
-    for (uint32_t i = 0; i < count && result == DSM_OK; i++)
-      result = paused(job) ? DSM_CANCELLED
-                           : bake_pixel(job, &s->pixel, &s->sink, &limits, i * samples, samples, &s->stored,
-                                        &s->pixels[places->place[done + i]], tally);
+  uint32_t count = smaller(MOST_SHARES, larger(places->count * samples / SHARE_RAYS, 1));
+  pass p = {.shares = {.count = count, .make = make_share}, .key = key, .places = places, .samples = samples,
+            .share_pixels = (places->count + count - 1) / count, .out = s};
+  dsm_result result = DSM_OK;
+  for (uint32_t k = 0; k < count; k++) {
+    s->shares[k].stored.count = 0;
+    s->shares[k].tally = (tile_tally){0};
+  }
+  if (job->store && count > 1)
+    result = tile_shares_do(job->store, key, &p.shares, job->maker);
+  else
+    for (uint32_t k = 0; k < count && result == DSM_OK; k++)
+      result = bake_share(&p, job, s, k);
+  for (uint32_t k = 0; k < count; k++) {
+    dsm_result gathered = gather(&p, k, tally);
+    if (result == DSM_OK)
+      result = gathered;
   }
   return result;
 }
@@ -96,4 +176,6 @@ void bake_scratch_free(bake_scratch *s)
   pixel_scratch_free(&s->pixel);
   vertices_free(&s->stored);
   vertices_free(&s->near_by);
+  for (uint32_t k = 0; k < MOST_SHARES; k++)
+    vertices_free(&s->shares[k].stored);
 }

@@ -133,7 +133,7 @@ static int is_a_guess(const bake_job *job, uint32_t samples, const event *events
   return samples == 1 && is_automatic(job->settings) && t->c[0] == 0 && t->c[1] == 0 && t->c[2] == 0;
 }
 
-static dsm_result append(const vertices *from, vertices *to)
+dsm_result append_vertices(const vertices *from, vertices *to)
 {
   dsm_result result = DSM_OK;
   for (size_t i = 0; i < from->count && result == DSM_OK; i++)
@@ -185,7 +185,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   double tolerance = finest_tolerance(job->settings);
   pixel->tolerance = is_a_guess(job, samples, events) ? noise_ceiling(1) : fmax(pixel->tolerance, tolerance);
   double spent = rounding_of_depths(kind.volume, tolerance) + (kind.volume ? spent_on_volume(job->settings) : 0);
-  result = compressed ? append(clean, stored)
+  result = compressed ? append_vertices(clean, stored)
                       : compress_rounded(clean->data, clean->count, channels, tolerance, spent, bake_value_bits(job->settings), stored);
   pixel->count = stored->count - pixel->first;
   return result;

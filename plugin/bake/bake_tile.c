@@ -190,7 +190,6 @@ dsm_result bake_tile(const bake_job *job, bake_scratch *s, const tile_key *key, 
                      const tile **out, tile_tally *tally)
 {
   double start = seconds();
-  uint64_t dropped = s->sink.dropped, clamped = s->sink.clamped;
   *out = NULL;
   dsm_result result = bake_pixels(job, s, key, wanted, tally);
   double tolerance = finest_tolerance(job->settings);
@@ -204,8 +203,6 @@ dsm_result bake_tile(const bake_job *job, bake_scratch *s, const tile_key *key, 
       tally->pixels_coloured += s->pixels[i].coloured != 0;
       tally->vertices += s->pixels[i].count;
     }
-  tally->events_dropped += s->sink.dropped - dropped;
-  tally->events_clamped += s->sink.clamped - clamped;
   tally->bake_seconds += seconds() - start;
   return result;
 }

@@ -174,6 +174,12 @@ static void add_content(tile_tally *sum, const tile_tally *tally)
   sum->vertices += tally->vertices;
 }
 
+void tile_tally_add(tile_tally *sum, const tile_tally *tally)
+{
+  add_cost(sum, tally);
+  add_content(sum, tally);
+}
+
 void map_count_made(dsm_map *map, const tile_key *key, const tile_tally *tally, int failed)
 {
   const tile_cache *cache = &map->store.cache;

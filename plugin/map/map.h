@@ -15,6 +15,8 @@ typedef struct {
   double bake_seconds, trace_seconds;
 } tile_tally;
 
+void tile_tally_add(tile_tally *sum, const tile_tally *tally);
+
 /* Where tiles come from that are not baked. */
 typedef struct tile_source {
   /* [any] DSM_OK: *out is a new tile, or &tile_lit. DSM_REFUSED, DSM_NO_MEMORY: nothing; the source tells the host once. */

@@ -110,15 +110,15 @@ static int same_tile(const tile_key *a, const tile_key *b)
   return a->face == b->face && a->level == b->level && a->x == b->x && a->y == b->y;
 }
 
-static int is_claimed(const tile_store *store, const tile_key *key)
+tile_claim *tile_store_claimed(const tile_store *store, const tile_key *key)
 {
-  for (const tile_claim *c = store->claims; c; c = c->next)
-    if (same_tile(&c->key, key))
-      return 1;
-  return 0;
+  tile_claim *c = store->claims;
+  while (c && !same_tile(&c->key, key))
+    c = c->next;
+  return c;
 }
 
-static void wait_for_change(tile_store *store)
+void tile_store_wait(tile_store *store)
 {
   struct timespec until;
   clock_gettime(CLOCK_MONOTONIC, &until);
@@ -136,10 +136,9 @@ static int try_claim(tile_store *store, const tile_key *key, tile_claim *claim, 
   *out = tile_cache_hold(tile_store_slot(store, key), holder);
   if (*out)
     return 1;
-  if (is_claimed(store, key))
+  if (tile_store_claimed(store, key))
     return 0;
-  claim->key = *key;
-  claim->next = store->claims;
+  *claim = (tile_claim){.key = *key, .next = store->claims};
   store->claims = claim;
   return 1;
 }
@@ -148,12 +147,12 @@ dsm_result tile_store_claim(tile_store *store, const tile_key *key, tile_claim *
                             int32_t (*pause)(void *data), void *data, const tile **out)
 {
   *out = NULL;
-  for (;;) {
+  for (int asked = 0;; asked = 1) {
     pthread_mutex_lock(&store->mutex);
     dsm_result result = tile_holder_make_room(holder);
     int done = result != DSM_OK || try_claim(store, key, claim, holder, out);
-    if (!done)
-      wait_for_change(store);
+    if (!done && asked)
+      tile_store_wait(store);
     pthread_mutex_unlock(&store->mutex);
     if (done)
       return result;

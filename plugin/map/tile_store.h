@@ -9,7 +9,7 @@
  *    +------------------ eviction ---------------------+   (see tile_cache.h; those without pixels stay)
  *
  * Readers hold a ready tile without a lock. Claims are kept in a short list under a mutex; a thread that needs a
- * claimed tile sleeps at most 20 ms at a time and asks its host in between whether to give up. Who has claimed a tile may
+ * claimed tile helps to make it (see tile_shares.h), sleeps at most 20 ms at a time, and asks its host in between whether to give up. Who has claimed a tile may
  * claim others to make it of, nearer to the level that is baked without any (the finest; with `accuracy`, the map's first level):
  * an average claims finer ones, and what refines the first level coarser ones. So no two threads wait for each other.
  */
@@ -34,6 +34,7 @@ typedef struct {
 /* A tile that one thread is making; lives on that thread's stack. */
 typedef struct tile_claim {
   tile_key key;
+  struct tile_shares *shares;   /* that others may take part in; under the mutex */
   struct tile_claim *next;
 } tile_claim;
 
@@ -72,12 +73,17 @@ static inline const tile *tile_store_peek(const tile_store *store, const tile_ke
   return atomic_load_explicit(tile_store_slot(store, key), memory_order_acquire);
 }
 
-/* Gets and holds the tile, waiting for its maker if there is one. DSM_OK with *out NULL: nobody has it, the caller
- * holds the claim now and must publish or abandon it. DSM_CANCELLED: `pause` said so. DSM_NO_MEMORY: for one place more. */
+/* Gets and holds the tile, waiting for its maker if there is one: then `pause` is called first, and each time when something may have
+ * changed. DSM_OK with *out NULL: nobody has it, the caller holds the claim now and must publish or abandon it. DSM_CANCELLED: `pause`
+ * said so. DSM_NO_MEMORY: for one place more. */
 dsm_result tile_store_claim(tile_store *store, const tile_key *key, tile_claim *claim, tile_holder *holder,
                             int32_t (*pause)(void *data), void *data, const tile **out);
 /* Both end the claim and wake those who wait. `t` belongs to the store from now on, and is held. */
 void tile_store_publish(tile_store *store, tile_claim *claim, tile_holder *holder, const tile *t);
 void tile_store_abandon(tile_store *store, tile_claim *claim);
+
+/* Under the mutex: the claim for the tile, NULL if there is none; and to wait for any claim to change, for 20 ms at most. */
+tile_claim *tile_store_claimed(const tile_store *store, const tile_key *key);
+void tile_store_wait(tile_store *store);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "map/pyramid.h"
+#include "map/tile_shares.h"
 
 dsm_result worker_create(dsm_map *map, void *host_data, tile_maker *maker, dsm_worker **out)
 {
@@ -101,6 +102,24 @@ static dsm_result make_tile(dsm_worker *worker, const tile_key *key, const tile 
   return DSM_OK;
 }
 
+typedef struct { dsm_worker *worker; const tile_key *key; } waiting;
+
+/* What a thread does before it sleeps: its part of the tile that it waits for, and what its host likes. If it fails there, it just waits. */
+static int32_t help_and_pause(void *data)
+{
+  const waiting *w = data;
+  dsm_worker *worker = w->worker;
+  dsm_map *map = worker->map;
+  if (worker->maker) {
+    worker->baking = 1;
+    dsm_result result = tile_shares_help(&map->store, w->key, worker->maker);
+    worker->baking = 0;
+    if (result == DSM_CANCELLED)
+      return 1;
+  }
+  return map->host.pause && map->host.pause(worker->host_data);
+}
+
 dsm_result worker_need_tile(dsm_worker *worker, const tile_key *key, const tile **out)
 {
   dsm_map *map = worker->map;
@@ -113,8 +132,8 @@ dsm_result worker_need_tile(dsm_worker *worker, const tile_key *key, const tile 
   if (worker->baking)
     return DSM_TRACE;
   tile_claim claim;
-  dsm_result result = tile_store_claim(&map->store, key, &claim, &worker->holder, map->host.pause, worker->host_data,
-                                       out);
+  waiting waits = {worker, key};
+  dsm_result result = tile_store_claim(&map->store, key, &claim, &worker->holder, help_and_pause, &waits, out);
   if (result != DSM_OK || *out)
     return result;
   uint32_t held = worker->holder.held;

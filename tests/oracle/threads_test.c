@@ -65,8 +65,8 @@ static void *look_everywhere(void *data) {
   return NULL;
 }
 
-/* A smaller map where fewer cases are asked for. */
-static dsm_map *bake_with(int threads, int stops_often, uint64_t seed) {
+/* A smaller map where fewer cases are asked for. `together`: all threads in one order, so that they need the same tiles. */
+static dsm_map *bake_with(int threads, int stops_often, int together, uint64_t seed) {
   char resolution[32];
   snprintf(resolution, sizeof resolution, "resolution %d", UNLESS_SLOW(150, 100));
   world w = {.shapes = scene, .count = SHAPES};
@@ -85,7 +85,7 @@ static dsm_map *bake_with(int threads, int stops_often, uint64_t seed) {
   pthread_t ids[MOST_THREADS];
   uint64_t cancelled = 0;
   for (int i = 0; i < threads; ++i) {
-    hosts[i] = (thread_host){.w = w, .random = rng_seeded(seed + (uint64_t)i), .stops_often = stops_often, .map = map};
+    hosts[i] = (thread_host){.w = w, .random = rng_seeded(together ? seed : seed + (uint64_t)i), .stops_often = stops_often, .map = map};
     assert_int_equal(pthread_create(&ids[i], NULL, look_everywhere, &hosts[i]), 0);
   }
   for (int i = 0; i < threads; ++i) {
@@ -124,20 +124,22 @@ static void same_bytes(const dsm_map *a, const dsm_map *b) {
 
 static void any_number_of_threads(void **state) {
   (void)state;
-  dsm_map *one = bake_with(1, 0, 1);
+  dsm_map *one = bake_with(1, 0, 0, 1);
   for (int threads = 2; threads <= MOST_THREADS; threads += threads < 4 ? 1 : 4) {
-    dsm_map *many = bake_with(threads, 0, 100u * (uint64_t)threads);
-    same_bytes(one, many);
-    dsm_api.map_destroy(many);
+    for (int together = 0; together < 2; ++together) {
+      dsm_map *many = bake_with(threads, 0, together, 100u * (uint64_t)threads);
+      same_bytes(one, many);
+      dsm_api.map_destroy(many);
+    }
   }
   dsm_api.map_destroy(one);
 }
 
 static void stopped_and_resumed(void **state) {
   (void)state;
-  dsm_map *one = bake_with(1, 0, 1);
-  for (int threads = 1; threads <= 4; threads += 3) {
-    dsm_map *many = bake_with(threads, 1, 7);
+  dsm_map *one = bake_with(1, 0, 0, 1);
+  for (int k = 0; k < 3; ++k) {
+    dsm_map *many = bake_with(k ? 4 : 1, 1, k == 2, 7);
     same_bytes(one, many);
     dsm_api.map_destroy(many);
   }

@@ -14,7 +14,7 @@
 static wanted_pixels all_wanted;   /* set in main */
 
 static const tile *bake(stage *s, uint32_t x, uint32_t y, bake_scratch *scratch, tile_tally *tally) {
-  bake_job job = {&s->map->host, &s->w, &s->map->projection, &s->map->settings, &s->map->light};
+  bake_job job = {&s->map->host, &s->w, &s->map->projection, &s->map->settings, &s->map->light, NULL, NULL};
   tile_key key = {0, 0, x, y};
   const tile *t = NULL;
   *tally = (tile_tally){0};
@@ -219,12 +219,12 @@ static dsm_result count_batches(void *data, const dsm_ray *rays, uint32_t count,
   return DSM_OK;
 }
 
-/* Whole pixels a batch, 4096 rays at most unless one pixel has more; and no ray outside the face. */
+/* Whole pixels a batch, of four equal shares, or as many as have 256 rays; 4096 rays at most unless one pixel has more. And no ray outside the face. */
 static void batches_are_whole_pixels(void **state) {
   (void)state;
-  static const char *const samples[] = {"samples 1", "samples 16", "samples 17", "samples 1000", "samples 4096"};
-  const uint32_t count[] = {1, 16, 17, 1000, 4096}, most[] = {256, 4096, 240 * 17, 4000, 4096}, calls[] = {1, 1, 2, 64, 256};
-  for (int k = 0; k < 5; ++k) {
+  static const char *const samples[] = {"samples 1", "samples 3", "samples 16", "samples 17", "samples 1000", "samples 4096"};
+  const uint32_t count[] = {1, 3, 16, 17, 1000, 4096}, most[] = {256, 86 * 3, 1024, 64 * 17, 4000, 4096}, calls[] = {1, 3, 4, 4, 64, 256};
+  for (int k = 0; k < 6; ++k) {
     shape ball = sphere_at(0, 0, 5, 1, 0);
     stage s;
     batches b = {0};
@@ -232,7 +232,7 @@ static void batches_are_whole_pixels(void **state) {
     dsm_host host = s.map->host;
     host.trace = count_batches;
     host.pause = NULL;
-    bake_job job = {&host, &b, &s.map->projection, &s.map->settings, &s.map->light};
+    bake_job job = {&host, &b, &s.map->projection, &s.map->settings, &s.map->light, NULL, NULL};
     bake_scratch scratch = {0};
     tile_tally tally = {0};
     const tile *t;

@@ -23,7 +23,7 @@ static one_tile bake_from(dsm_light from, const shape *shapes, int count, const 
   dsm_map *map = out.s.map;
   dsm_light light = map->light;
   light.caster_count = known;
-  bake_job job = {&map->host, &out.s.w, &map->projection, &map->settings, known ? &light : NULL};
+  bake_job job = {&map->host, &out.s.w, &map->projection, &map->settings, known ? &light : NULL, NULL, NULL};
   bake_scratch scratch = {0};
   tile_key key = {0, 0, x, y};
   assert_int_equal(bake_tile(&job, &scratch, &key, &all_wanted, &out.t, &out.tally), DSM_OK);
