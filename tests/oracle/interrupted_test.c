@@ -56,9 +56,9 @@ static const setup setups[] = {
   SETUP("deltas", 0, 9, "resolution 70", "samples 4", "tolerance 0.05"),
   SETUP("blurred", 0, 0.9, "resolution 40", "samples 1", "blur 0.1"),
   SETUP("cube", 1, 9, "resolution 30", "samples 1"),
-  SETUP("accurate", 0, 9, "accuracy 0.02", "resolution 140", "samples 9"),
-  SETUP("accurate and marked", 0, 0.7, "accuracy 0.02", "resolution 140", "samples 9"),
-  SETUP("accurate cube", 1, 0.9, "accuracy 0.05", "resolution 60", "samples 4"),
+  SETUP("accurate", 0, 9, "accuracy 0.02", "resolution 1000", "samples 9"),
+  SETUP("accurate and marked", 0, 0.7, "accuracy 0.02", "resolution 1000", "samples 9"),
+  SETUP("accurate cube", 1, 0.9, "accuracy 0.05", "resolution 500", "samples 4"),
 };
 
 static dsm_map *map_with(stopping_host *host, const setup *s, const shape *shapes, dsm_box *boxes, const char *const *words) {
