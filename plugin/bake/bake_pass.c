@@ -141,7 +141,7 @@ static dsm_result gather(const pass *p, uint32_t share, tile_tally *tally)
   for (uint32_t i = share * p->share_pixels; i < past_share(p, share); i++)
     p->out->pixels[p->places->place[i]].first += p->out->stored.count;
   tile_tally_add(tally, &from->tally);
-  return append_vertices(&from->stored, &p->out->stored);
+  return vertices_append(&p->out->stored, from->stored.data, from->stored.count);
 }
 
 dsm_result bake_pass(const bake_job *job, bake_scratch *s, const tile_key *key, uint32_t samples,

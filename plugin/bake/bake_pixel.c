@@ -133,14 +133,6 @@ static int is_a_guess(const bake_job *job, uint32_t samples, const event *events
   return samples == 1 && is_automatic(job->settings) && t->c[0] == 0 && t->c[1] == 0 && t->c[2] == 0;
 }
 
-dsm_result append_vertices(const vertices *from, vertices *to)
-{
-  dsm_result result = DSM_OK;
-  for (size_t i = 0; i < from->count && result == DSM_OK; i++)
-    result = vertices_push(to, from->data[i].z, from->data[i].v);
-  return result;
-}
-
 dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sink, const noise_limits *limits,
                       uint32_t first_ray, uint32_t samples, vertices *stored, baked_pixel *pixel, tile_tally *tally)
 {
@@ -185,7 +177,7 @@ dsm_result bake_pixel(const bake_job *job, pixel_scratch *s, const dsm_sink *sin
   double tolerance = finest_tolerance(job->settings);
   pixel->tolerance = is_a_guess(job, samples, events) ? noise_ceiling(1) : fmax(pixel->tolerance, tolerance);
   double spent = rounding_of_depths(kind.volume, tolerance) + (kind.volume ? spent_on_volume(job->settings) : 0);
-  result = compressed ? append_vertices(clean, stored)
+  result = compressed ? vertices_append(stored, clean->data, clean->count)
                       : compress_rounded(clean->data, clean->count, channels, tolerance, spent, bake_value_bits(job->settings), stored);
   pixel->count = stored->count - pixel->first;
   return result;

@@ -47,8 +47,6 @@ noise_limits limits_of(const bake_job *job, uint32_t face, uint32_t level, uint3
  * describes them in *pixel. The sink is in order. DSM_OK or DSM_NO_MEMORY. */
 dsm_result bake_pixel(const bake_job *job, pixel_scratch *scratch, const dsm_sink *sink, const noise_limits *limits,
                       uint32_t first_ray, uint32_t samples, vertices *stored, baked_pixel *pixel, tile_tally *tally);
-/* Adds all vertices of one list to another. DSM_OK or DSM_NO_MEMORY. */
-dsm_result append_vertices(const vertices *from, vertices *to);
 void pixel_scratch_free(pixel_scratch *scratch);
 
 #endif

@@ -167,11 +167,9 @@ static dsm_result fill_pixel(const bake_job *job, bake_scratch *s, const tile_ke
     first[count] = s->near_by.count;
     weights[count++] = weight;
     coloured |= p->coloured;
-    for (size_t k = p->first; k < p->first + p->count; k++) {
-      dsm_result result = vertices_push(&s->near_by, s->stored.data[k].z, s->stored.data[k].v);
-      if (result != DSM_OK)
-        return result;
-    }
+    dsm_result result = p->count ? vertices_append(&s->near_by, s->stored.data + p->first, p->count) : DSM_OK;
+    if (result != DSM_OK)
+      return result;
   }
   first[count] = s->near_by.count;
   average_input in = {s->near_by.data, first, weights, count};

@@ -18,6 +18,12 @@ dsm_result vertices_push(vertices *list, double z, rgb v) {
   return DSM_OK;
 }
 
+dsm_result vertices_append(vertices *list, const vertex *from, size_t count) {
+  dsm_result result = DSM_OK;
+  for (size_t i = 0; i < count && result == DSM_OK; ++i) result = vertices_push(list, from[i].z, from[i].v);
+  return result;
+}
+
 void vertices_free(vertices *list) {
   free(list->data);
   *list = (vertices){0};

@@ -24,6 +24,8 @@ typedef struct {
 
 /* Appends one vertex. DSM_NO_MEMORY leaves the list as it was. */
 dsm_result vertices_push(vertices *list, double z, rgb v);
+/* Appends those of another list. DSM_NO_MEMORY: some may have been. */
+dsm_result vertices_append(vertices *list, const vertex *from, size_t count);
 void vertices_free(vertices *list);   /* gives the memory back; the list is empty and may be used again */
 
 /* The value at depth z; at a step, the value in front of it (a surface does not shadow itself). Binary

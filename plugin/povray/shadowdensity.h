@@ -31,6 +31,8 @@ class ShadowDensity
 		const DblRGBColour& Colour() const { return colour; }
 		/// Of a mapped density.
 		const ShadowTransfer& Transfer() const { return transfer; }
+		const DblRGBColour& Least() const { return least; }
+		const DblRGBColour& Most() const { return most; }
 
 		/// The pattern's value at a point: what the map is then asked for. For mapped densities.
 		double Value(const VECTOR point, TraceThreadData *thread) const;

@@ -81,7 +81,7 @@ void Quarters(double a, double b, double slopeA, double slopeB, double out[5])
 
 }
 
-ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0), guide(NULL), guided(false)
+ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), grows(false), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0), guide(NULL), guided(false)
 {
 }
 
@@ -118,6 +118,7 @@ double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, doubl
 		return visible;
 
 	ray = &r;
+	grows = false;
 	visibleAtFront = visible;
 	allowed = kStepShare * tolerance;
 	allowedSmooth = slackness * allowed;
@@ -134,6 +135,7 @@ double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, doubl
 				Plan(depth, firstStep, true);
 				Run(dark);
 			}
+			grows = grows || (Least(stretch.extinction) < 0.0);
 			Advance(stretch.end, stretch.extinction * (stretch.end - depth));
 			continue;
 		}
@@ -150,6 +152,8 @@ double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, doubl
 			Run(dark);
 	}
 
+	if(grows)
+		sink.Mark();
 	if(grey)
 		Emit<1>(tolerance, sink);
 	else
@@ -360,11 +364,18 @@ void ShadowMedia::Know(Sample& sample) const
 	const Vector3d point(ray->origin[X] + sample.depth * ray->direction[X], ray->origin[Y] + sample.depth * ray->direction[Y],
 	                     ray->origin[Z] + sample.depth * ray->direction[Z]);
 	for(size_t i = 0; i < mapped.size(); i++)
+	{
 		sample.value[i] = mapped[i]->Mapped()->Value(*point, thread);
+		grows = grows || (mapped[i]->MayGrow() && (Least(mapped[i]->Mapped()->Transfer().At(sample.value[i]) * mapped[i]->Scale()) < 0.0));
+	}
 
 	sample.other = DblRGBColour(0.0);
 	for(vector<const ShadowMedium *>::const_iterator i(others.begin()); i != others.end(); i++)
-		sample.other += (*i)->Extinction(point, thread);
+	{
+		const DblRGBColour extinction((*i)->Extinction(point, thread));
+		grows = grows || (Least(extinction) < 0.0);
+		sample.other += extinction;
+	}
 	sample.known = true;
 }
 
@@ -509,7 +520,7 @@ void ShadowMedia::Advance(double depth, const DblRGBColour& thickness)
 {
 	Point point = points.back();
 
-	// densities below 0 or no number, and a cubic that overshoots, must not make light
+	// densities below 0, whose rays are marked, and a cubic that overshoots must not make light
 	for(int k = 0; k < 3; k++)
 		point.thickness[k] += (thickness[k] > 0.0) ? thickness[k] : 0.0;
 	point.depth = depth;

@@ -25,6 +25,8 @@ class ShadowMedia
 			public:
 				virtual ~Sink() { }
 				virtual void Span(double front, double back, const DblRGBColour& transmittance) = 0;
+				/// The light grows somewhere on the way, which no span tells.
+				virtual void Mark() = 0;
 		};
 
 		/// Scratch memory for one thread.
@@ -89,6 +91,7 @@ class ShadowMedia
 		vector<const ShadowMedium *> media;
 		vector<const ShadowMedium *> mapped, others; ///< the same media, by how they are sampled
 		bool grey;                    ///< all of them: one channel tells
+		mutable bool grows;           ///< extinction below 0 was met
 
 		// of the integral under way
 		const dsm_ray *ray;

@@ -18,7 +18,7 @@ class ShadowStory : public ShadowMedia::Sink
 		void Surface(double depth, const double transmittance[3]);
 		void Span(double front, double back, const double transmittance[3]);
 		virtual void Span(double front, double back, const DblRGBColour& transmittance) { Span(front, back, *transmittance); }
-		void Mark() { marked = true; }
+		virtual void Mark() { marked = true; }
 
 		/// The ray passes media, even if they take no light.
 		void Media() { media = true; }

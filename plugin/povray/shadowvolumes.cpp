@@ -40,7 +40,7 @@ DblRGBColour Bounded(DblRGBColour extinction)
 }
 
 ShadowMedium::ShadowMedium(const Media& media, double length) :
-	pigment(media.Density), extinction(Bounded(DblRGBColour(media.Extinction))), scale(extinction), mapped(NULL), step(length)
+	pigment(media.Density), extinction(Bounded(DblRGBColour(media.Extinction))), scale(extinction), mapped(NULL), grows(false), step(length)
 {
 	for(const PIGMENT *p = pigment; p != NULL; p = static_cast<const PIGMENT *>(p->Next))
 	{
@@ -52,6 +52,9 @@ ShadowMedium::ShadowMedium(const Media& media, double length) :
 	}
 	if((densities.size() == 1) && (densities[0].GetKind() == ShadowDensity::kMapped))
 		mapped = &densities[0];
+	if(mapped != NULL)
+		for(int k = 0; k < 3; k++)
+			grows = grows || (min(mapped->Least()[k] * scale[k], mapped->Most()[k] * scale[k]) < 0.0);
 }
 
 DblRGBColour ShadowMedium::Extinction(const Vector3d& point, TraceThreadData *thread) const

@@ -30,6 +30,8 @@ class ShadowMedium
 		/// The only density that is not constant, if it is mapped: then extinction is Scale() times its transfer function.
 		const ShadowDensity *Mapped() const { return mapped; }
 		const DblRGBColour& Scale() const { return scale; }
+		/// Whether the mapped density's extinction is below 0 anywhere.
+		bool MayGrow() const { return grows; }
 
 		/// The densities that are not constant.
 		const vector<ShadowDensity>& Densities() const { return densities; }
@@ -39,6 +41,7 @@ class ShadowMedium
 		DblRGBColour scale; ///< extinction times the constant densities
 		vector<ShadowDensity> densities;
 		const ShadowDensity *mapped;
+		bool grows;
 		double step;
 
 		ShadowMedium(const ShadowMedium&);

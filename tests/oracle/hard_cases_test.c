@@ -73,6 +73,12 @@ static void ten_thousand_layers(void **state) {
       for (int i = 500; i < LAYERS; i += 977) assert_light(&s, in_air(0.1, 0.2, 1 + gaps[k] * (i - 0.5)), pow(0.9999, i), 0.0005);
     stage_close(&s);
   }
+  /* A float apart they are still told apart, where depths may not be rounded for a tolerance. */
+  for (int i = 0; i < LAYERS; ++i) sheets[i] = sheet_at(1 + gaps[1] * i, 1, 0.9999, 0.9999, 0.9999);
+  stage s;
+  stage_open(&s, sheets, LAYERS, parallel_at(0, 0, 0, 0, 0, 1), WORDS("resolution 4", "tolerance 0", "samples 1"));
+  for (int i = 0; i <= LAYERS; i += 500) assert_light(&s, in_air(0.1, 0.2, 1 + gaps[1] * (i - 0.5)), pow(0.9999, i), 0);
+  stage_close(&s);
 }
 
 /* What is nearly opaque hides nothing of what is, and what is opaque leaves exactly nothing. */

@@ -259,13 +259,18 @@ static void compressors(void **state) {
 
 /* ---- A look-up ------------------------------------------------------------------------------------------------- */
 
-/* A tile of random pixels; `exact`: on depths and values that the tile can hold without rounding. */
+/* How a tile stores: rounded, or depths and values that it can hold as they are, in absolute records or, mostly, in deltas. */
+typedef enum { ROUNDED, EXACT, IN_DELTAS, STORINGS } storing;
+static const rounding rule_of_deltas = {8, 1, 0x1p-6, 0};
+
+/* A tile of random pixels. */
 typedef struct {
   tile_maker base;
   vertices all;
   baked_pixel pixels[TILE_PIXELS];
   size_t counts[TILE_PIXELS];
-  int exact;
+  storing as;
+  int tiles_of_deltas;
 } random_tile_maker;
 
 static dsm_result make_random(tile_maker *base, const tile_key *key, const wanted_pixels *wanted, const tile **out, tile_tally *tally) {
@@ -273,8 +278,10 @@ static dsm_result make_random(tile_maker *base, const tile_key *key, const wante
   random_tile_maker *m = (random_tile_maker *)(void *)base;
   if (key->level || key->x || key->y) abort();
   tally->pixels = TILE_PIXELS;
-  const rounding rule = rounding_least();
-  return pack_tile(m->pixels, &m->all, &rule, out);
+  const rounding rule = m->as == IN_DELTAS ? rule_of_deltas : rounding_least();
+  dsm_result result = pack_tile(m->pixels, &m->all, &rule, out);
+  m->tiles_of_deltas += result == DSM_OK && (*out)->kind == TILE_STORED && codes_are_deltas(&(*out)->codes);
+  return result;
 }
 
 static void destroy_nothing(tile_maker *base) { (void)base; }
@@ -283,17 +290,18 @@ static double in_steps(double x, double steps) { return floor(x * steps + 0.5) /
 
 static void fill(random_tile_maker *m, rng *r) {
   m->all.count = 0;
-  m->exact = rng_below(r, 2) == 0;
+  m->as = (storing)rng_below(r, STORINGS);
+  double depth_steps = m->as == IN_DELTAS ? 1 / rule_of_deltas.quantum : 0x1p18, value_steps = m->as == IN_DELTAS ? 255 : VALUE_STEPS;
   for (int i = 0; i < TILE_PIXELS; ++i) {
     vertex f[16];
-    int grey = rng_below(r, 4) != 0;
-    size_t n = random_function(r, f, i ? 16 : 2, m->exact ? 1 : rng_scale(r, 1e-6, 1e7), 0, grey);
+    int grey = m->as == IN_DELTAS || rng_below(r, 4) != 0;
+    size_t n = random_function(r, f, i ? 16 : 2, m->as != ROUNDED ? 1 : rng_scale(r, 1e-6, 1e7), 0, grey);
     m->pixels[i] = (baked_pixel){.first = m->all.count, .count = n, .coloured = !grey, .tolerance = 0.01};
     m->counts[i] = n;
     for (size_t k = 0; k < n; ++k) {
-      double z = m->exact ? 8 + fmin(in_steps(f[k].z, 0x1p18), 31) : f[k].z;
+      double z = m->as != ROUNDED ? 8 + fmin(in_steps(f[k].z, depth_steps), 31) : f[k].z;
       rgb v = f[k].v;
-      for (int c = 0; m->exact && c < 3; ++c) v.c[c] = in_steps(v.c[c], VALUE_STEPS);
+      for (int c = 0; m->as != ROUNDED && c < 3; ++c) v.c[c] = in_steps(v.c[c], value_steps);
       assert_int_equal(vertices_push(&m->all, z, v), DSM_OK);
     }
   }
@@ -349,8 +357,8 @@ static void look(const random_tile_maker *m, dsm_worker *worker, rng *r, double 
   for (int k = 0; k < DEPTHS; ++k) {
     dsm_receiver at = {.plane_count = 0};
     for (int i = 0; i < 3; ++i) at.point[i] = u * f->axes.right[i] + v * f->axes.up[i] + depths[k] * f->axes.forward[i];
-    double rgb[3], z = at.point[2], shift = m->exact ? 0 : 0x1p-23 * (z - near_depth) + 0x1p-51 * z + 1e-44;
-    double rounding = m->exact ? 0 : VALUE_ROUNDING;
+    double rgb[3], z = at.point[2], shift = m->as != ROUNDED ? 0 : 0x1p-23 * (z - near_depth) + 0x1p-51 * z + 1e-44;
+    double rounding = m->as != ROUNDED ? 0 : VALUE_ROUNDING;
     dsm_result result = map_lookup(worker, &at, rgb);
     assert_seeded(r, result == DSM_OK || (result == DSM_OUTSIDE && rgb[0] == 1 && rgb[1] == 1 && rgb[2] == 1));
     for (int c = 0; c < 3; ++c) {
@@ -382,7 +390,7 @@ static void look_up(void **state) {
     worker_destroy(worker);
     map_destroy(map);
   }
-  print_message("look-up: beyond what storing rounds by %.3Lg at worst\n", worst);
+  print_message("look-up: beyond what storing rounds by %.3Lg at worst, %d tiles of deltas\n", worst, m.tiles_of_deltas);
   vertices_free(&m.all);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Casters that no number describes: absorption, densities, colours and shapes that are infinite or not a number.
+// Casters that no number describes: absorption, densities, colours and shapes that are infinite or not a number; and media that make light.
 // Their shadows are those of rays; no picture has a number that is none, and no program falls over.
 // Truth: ray-traced. The casters themselves are not seen.
 #version 3.7;
@@ -46,5 +46,17 @@ light_source {
   #declare Undefined = density { function { ln(x - 100) } color_map { [0 rgb 1] [1 rgb 3] } }
   Ball(<-1, 1, 0>, 1, Undefined)
   sphere { <1, 1, 0>, 0.5 no_image pigment { function { sqrt(x - 100) } color_map { [0 rgbt 0.5] [1 rgbt 1] } } }
+#break
+#case (5)
+  Ball(<-1.2, 1, 0>, -0.5, rgb 1)
+  Ball(<0, 1, 0.2>, 1, rgb <-1e30, -0.1, 0>)
+  Ball(<1.2, 1, 0>, -Endless, rgb 1)
+#break
+#case (6)
+  #declare Rim = density { spherical translate <-1.2, 1, 0> color_map { [0.5 rgb -0.8] [0.8 rgb 2] } }
+  #declare Halves = density { function { x } color_map { [0 rgb 1] [0 rgb -0.7] } }
+  Ball(<-1.2, 1, 0>, 1, Rim)
+  Ball(<0, 1, 0.2>, 1, Halves)
+  union { Ball(<1.2, 1, 0>, 1, rgb 1) Ball(<1.2, 1.2, 0>, <-1.2, -0.2, 0>, rgb 1) }
 #break
 #end
