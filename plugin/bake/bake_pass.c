@@ -7,7 +7,7 @@
 #include "bake/seconds.h"
 
 /* Of a batch, at most unless one pixel has more: a quarter of a megabyte. Of a share, at least: enough for a host to sort its objects by. */
-enum { BATCH_RAYS = 4096, SHARE_RAYS = 256 };
+enum { BATCH_RAYS = 4096, SHARE_RAYS = 1024 };
 
 static int paused(const bake_job *job)
 {

@@ -219,11 +219,11 @@ static dsm_result count_batches(void *data, const dsm_ray *rays, uint32_t count,
   return DSM_OK;
 }
 
-/* Whole pixels a batch, of four equal shares, or as many as have 256 rays; 4096 rays at most unless one pixel has more. And no ray outside the face. */
+/* Whole pixels a batch, of four equal shares, or as many as have 1024 rays; 4096 rays at most unless one pixel has more. And no ray outside the face. */
 static void batches_are_whole_pixels(void **state) {
   (void)state;
   static const char *const samples[] = {"samples 1", "samples 3", "samples 16", "samples 17", "samples 1000", "samples 4096"};
-  const uint32_t count[] = {1, 3, 16, 17, 1000, 4096}, most[] = {256, 86 * 3, 1024, 64 * 17, 4000, 4096}, calls[] = {1, 3, 4, 4, 64, 256};
+  const uint32_t count[] = {1, 3, 16, 17, 1000, 4096}, most[] = {256, 768, 1024, 64 * 17, 4000, 4096}, calls[] = {1, 1, 4, 4, 64, 256};
   for (int k = 0; k < 6; ++k) {
     shape ball = sphere_at(0, 0, 5, 1, 0);
     stage s;
