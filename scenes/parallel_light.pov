@@ -25,9 +25,7 @@ light_source {
   <-8, 9, -5>, rgb <1.0, 0.95, 0.88>*1.1
   #if (Cylinder) cylinder radius 2.6 falloff 3.2 tightness 0 #else parallel #end
   point_at <0, 0.5, 0>
-  deep_shadow {
-    #ifdef (Accuracy) accuracy Accuracy #else resolution Resolution samples Samples #end
-  }
+  deep_shadow { #ifdef (Accuracy) accuracy Accuracy #else resolution Resolution samples Samples #end }
 }
 
 background { rgb <0.42, 0.55, 0.72> }

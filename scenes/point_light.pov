@@ -21,9 +21,7 @@ camera {
 
 light_source {
   0, rgb <1.0, 0.94, 0.85>*1.2
-  deep_shadow {
-    #ifdef (Accuracy) accuracy Accuracy #else resolution Resolution samples Samples #end
-  }
+  deep_shadow { #ifdef (Accuracy) accuracy Accuracy #else resolution Resolution samples Samples #end }
 }
 
 #macro Paint(Colour)
