@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "store/deep_exr_calls.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -93,13 +94,16 @@ static size_t CountSamples(const DeepData& data, deep_tile *tile)
     return sum;
 }
 
+// Also for no words at all: who reads them may point there.
 static bool MakeRoom(deep_tile *tile, size_t words)
 {
-    if (tile->room >= words)
+    if (tile->words && tile->room >= words)
         return true;
     free(tile->words);
-    tile->words = static_cast<uint32_t *>(malloc(words * sizeof *tile->words));
-    tile->room = tile->words ? words : 0;
+    tile->room = std::max(words, size_t(1));
+    tile->words = static_cast<uint32_t *>(malloc(tile->room * sizeof *tile->words));
+    if (!tile->words)
+        tile->room = 0;
     return tile->words != nullptr;
 }
 

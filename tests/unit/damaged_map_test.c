@@ -127,9 +127,32 @@ static void damaged_maps_are_refused_or_read(void **state) {
   assert_seeded(&r, refused > 10 * read && read > 0);
 }
 
+/* Whoever goes through the words of a tile may point at them, even where there are none. */
+static void a_tile_without_samples_has_words_to_point_at(void **state) {
+  (void)state;
+  const deep_part part = {.name = "empty", .across = 1, .up = 1, .channel_count = 2, .channels = {"Z", "V"}};
+  deep_error error;
+  const deep_exr *exr = deep_exr_load(&error);
+  assert_non_null(exr);
+  deep_tile tile = {.words = NULL};
+  deep_writer *writer = exr->create(made_path("empty.exr"), &part, 1, NULL, 0, &error);
+  assert_non_null(writer);
+  assert_true(exr->write(writer, 0, 0, 0, &tile, &error));
+  exr->finish(writer);
+  deep_reader *reader = exr->open(made_path("empty.exr"), &error);
+  assert_non_null(reader);
+  assert_true(exr->has_parts(reader, &part, 1));
+  assert_true(exr->read(reader, 0, 0, 0, &tile, &error));
+  assert_non_null(tile.words);
+  for (int i = 0; i < DEEP_PIXELS; ++i) assert_int_equal(tile.count[i], 0);
+  exr->close(reader);
+  free(tile.words);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(damaged_maps_are_refused_or_read),
+    cmocka_unit_test(a_tile_without_samples_has_words_to_point_at),
   };
   return cmocka_run_group_tests(tests, made_folder_open, made_folder_close);
 }
