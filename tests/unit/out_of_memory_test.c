@@ -13,6 +13,8 @@
 
 #include "core/average.h"
 #include "core/compress.h"
+#include "core/compress_lattice.h"
+#include "core/rounding.h"
 #include "core/settings.h"
 #include "core/transmittance.h"
 #include "random.h"
@@ -67,6 +69,9 @@ static dsm_result make_average(input *in, vertices *out) {
 }
 static dsm_result make_greedy(input *in, vertices *out) { return compress_greedy(in->all, EACH, in->channels, in->tolerance, out); }
 static dsm_result make_minimal(input *in, vertices *out) { return compress_minimal(in->all, EACH, in->channels, in->tolerance, out); }
+static dsm_result make_rounded(input *in, vertices *out) {
+  return compress_rounded(in->all, EACH, in->channels, in->tolerance, 0, rounding_value_bits(in->tolerance), out);
+}
 
 static void fill(input *in, rng *r) {
   double front = 0;
@@ -132,10 +137,10 @@ static int try(maker *make, input *in, rng *r, size_t room, long left, const ver
 
 static void every_vertex_and_every_block(void **state) {
   (void)state;
-  static maker *const makers[] = {make_ray, make_average, make_greedy, make_minimal};
+  static maker *const makers[] = {make_ray, make_average, make_greedy, make_minimal, make_rounded};
   static input in;
   for (uint64_t seed = 0; seed < 60; ++seed)
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < (int)(sizeof makers / sizeof *makers); ++k) {
       rng r = rng_seeded(seed);
       long before = memory.live;
       fill(&in, &r);
