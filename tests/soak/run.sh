@@ -9,6 +9,7 @@ set -u
 here=$(cd "$(dirname "$0")" && pwd)
 top=$(dirname "$(dirname "$here")")
 : "${POVRAY:=$top/build/bin/povray}" "${SHADOW_ERROR:=$top/tests/image/shadow_error}"
+export DEEP_SHADOW_CHOICE=map   # maps also where rays would cost less
 export POVRAY SHADOW_ERROR here
 export out=$top/build/soak
 first=${1:-1} count=${2:-200}
