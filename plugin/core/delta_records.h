@@ -70,6 +70,37 @@ static inline __attribute__((always_inline)) delta_walk delta_begin(const delta_
   return (delta_walk){at + s->bits + (s->bits & more), at + count * s->bits, start, 0, start, 0};
 }
 
+/* A vertex, or the start of a pixel: where a later search in the same pixel may begin. */
+typedef struct { uint32_t at, depth, fall; } delta_mark;
+
+/* Whether some of the records whose depths these are are no vertices. */
+static inline int delta_adds(const delta_word_shape *s, uint64_t depths)
+{
+  return ((depths + s->ones) & s->ones << s->depth_bits) != 0;
+}
+
+/* To a mark in the pixel or, if that is as deep as `code`, from there toward the light until it is not: a search for the code ends as if
+ * it came from the pixel's start. As many records are taken back as delta_seek takes at once, so that what it made its way over is made
+ * whole again; where some of them are no vertices, it had another way, and this does begin at the start. */
+static inline __attribute__((always_inline)) delta_walk delta_resume(const delta_word_shape *s, uint32_t first, uint32_t count,
+                                                                     const delta_mark *mark, uint64_t code)
+{
+  uint32_t all = s->last + s->bits, at = mark->at, depth = mark->depth, fall = mark->fall;
+  uint64_t one = (1ull << s->bits) - 1;
+  uint32_t begin = (first + 1) * s->bits;   /* or one record behind, where no search gets by whole words */
+  while (__builtin_expect(depth >= code, 0)) {
+    if (at < begin + all)
+      return delta_begin(s, first, count);
+    uint64_t word = delta_word(s->records, at - all) & ((1ull << all) - 1), depths = word & s->deeper;
+    if (delta_adds(s, depths))
+      return delta_begin(s, first, count);
+    at -= all;
+    depth -= (uint32_t)(depths * s->ones >> s->last & one);
+    fall -= (uint32_t)((word >> s->depth_bits & s->darker) * s->ones >> s->last & one);
+  }
+  return (delta_walk){at, (first + count) * s->bits, depth, fall, depth, fall};
+}
+
 /* To the next vertex; 0: there is none. */
 static inline int delta_next(const delta_word_shape *s, delta_walk *walk)
 {
@@ -94,16 +125,18 @@ static inline int delta_next(const delta_word_shape *s, delta_walk *walk)
 }
 
 /* To the first vertex from here on that is as deep as `code`, or else to the last. Adds up a few records at once, and looks for the vertex
- * among those that get there. Only where one of them is no vertex it goes one by one. */
-static inline __attribute__((always_inline)) void delta_seek(const delta_word_shape *s, delta_walk *walk, uint64_t code)
+ * among those that get there. Only where one of them is no vertex it goes one by one. The mark is a place some records in front of it. */
+static inline __attribute__((always_inline)) void delta_seek(const delta_word_shape *s, delta_walk *walk, uint64_t code, delta_mark *mark)
 {
   uint32_t all = s->last + s->bits;
   uint64_t one = (1ull << s->bits) - 1;
+  *mark = (delta_mark){walk->at, walk->depth, walk->fall};
   while (walk->depth < code && walk->at < walk->end) {
+    *mark = (delta_mark){walk->at, walk->depth, walk->fall};
     uint32_t left = walk->end - walk->at, taken = left < all ? left : all;
     uint64_t word = delta_word(s->records, walk->at) & ((1ull << taken) - 1);   /* behind the pixel's last: zeros, which change nothing */
     uint64_t depths = word & s->deeper;
-    if (__builtin_expect((depths + s->ones) & s->ones << s->depth_bits, 0)) {
+    if (__builtin_expect(delta_adds(s, depths), 0)) {
       uint32_t behind = walk->at + s->last;
       while (delta_next(s, walk) && walk->depth < code && walk->at <= behind)
         continue;
@@ -126,14 +159,15 @@ static inline __attribute__((always_inline)) void delta_seek(const delta_word_sh
   }
 }
 
-/* As visibility_find, from where the last call with the same walk and a key that is no deeper has ended. */
+/* As visibility_find, from where the last call with the same walk and a key that is no deeper has ended. Leaves a mark that is in front
+ * of the key, if it finds a place. */
 static inline __attribute__((always_inline)) int delta_find(const visibility_codes *codes, const delta_word_shape *s, delta_walk *walk,
-                                                            visibility_key key, visibility_place *place)
+                                                            visibility_key key, visibility_place *place, delta_mark *mark)
 {
   uint64_t code = key.word >> DELTA_SHIFT;
   if (code <= walk->depth_before)
     return 0;
-  delta_seek(s, walk, code);
+  delta_seek(s, walk, code, mark);
   uint32_t width = walk->depth < code ? 0 : walk->depth - walk->depth_before;
   place->a = place->b = 0;
   place->front = codes->value_mask - (width ? walk->fall_before : walk->fall);

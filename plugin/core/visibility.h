@@ -139,7 +139,8 @@ static inline int visibility_find(const visibility *function, visibility_key key
   if (codes_are_deltas(codes)) {
     delta_word_shape shape = delta_shape_of(codes);
     delta_walk walk = delta_begin(&shape, function->first, function->records);
-    return delta_find(codes, &shape, &walk, key, place);
+    delta_mark unused;
+    return delta_find(codes, &shape, &walk, key, place, &unused);
   }
   return visibility_find_as(function, key, hint, place, codes->record_bits / 8, codes_are_whole(codes));
 }

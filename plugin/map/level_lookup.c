@@ -63,27 +63,35 @@ enum { DELTAS = 0, UNKNOWN = 100 };
 /* visibility_find in a pixel that may be asked more than once, in deltas from front to back. */
 typedef struct {
   const visibility *function;
-  uint32_t *hint;
+  search_hint *hint;
+  uint32_t serial;   /* of the tile */
+  int begun;         /* in deltas: the walk is where the last call left it */
   delta_walk walk;
 } searched;
 
-static inline __attribute__((always_inline)) searched search_of(const view *v, const visibility *function, uint32_t *hint, reading as)
+/* The first search of a pixel begins where that of the last look-up ended, if that was in the same tile, and leaves its own mark. */
+static inline __attribute__((always_inline)) int find_in_deltas(const view *v, searched *pixel, visibility_key key, visibility_place *place)
 {
-  searched pixel;
-  pixel.function = function;
-  pixel.hint = hint;
-  if (as.bytes == DELTAS)
-    pixel.walk = delta_begin(&v->deltas, function->first, function->records);
-  return pixel;
+  const visibility *function = pixel->function;
+  search_hint *hint = pixel->hint;
+  delta_mark later, *mark = pixel->begun ? &later : &hint->mark;
+  if (!pixel->begun) {
+    pixel->begun = 1;
+    pixel->walk = hint->serial == pixel->serial ? delta_resume(&v->deltas, function->first, function->records, mark, key.word >> DELTA_SHIFT)
+                                                : delta_begin(&v->deltas, function->first, function->records);
+    hint->serial = pixel->serial;
+    *mark = (delta_mark){pixel->walk.at, pixel->walk.depth, pixel->walk.fall};
+  }
+  return delta_find(function->codes, &v->deltas, &pixel->walk, key, place, mark);
 }
 
 static inline __attribute__((always_inline)) int find(const view *v, searched *pixel, visibility_key key, visibility_place *place,
                                                       reading as)
 {
   if (as.bytes == DELTAS)
-    return delta_find(pixel->function->codes, &v->deltas, &pixel->walk, key, place);
-  return as.bytes == UNKNOWN ? visibility_find(pixel->function, key, pixel->hint, place)
-                             : visibility_find_as(pixel->function, key, pixel->hint, place, as.bytes, as.whole);
+    return find_in_deltas(v, pixel, key, place);
+  return as.bytes == UNKNOWN ? visibility_find(pixel->function, key, &pixel->hint->record, place)
+                             : visibility_find_as(pixel->function, key, &pixel->hint->record, place, as.bytes, as.whole);
 }
 
 /* Reads a pixel in front of where the receiver's own surface can be. Every plane bounds the surface by itself, so the
@@ -143,7 +151,7 @@ static inline __attribute__((always_inline)) dsm_result add_pixel_as(view *v, co
     function = tile_visibility_from(t, place, first);
   if (function.count == 0)
     return DSM_OK;
-  searched pixel = search_of(v, &function, &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE], as);
+  searched pixel = {.function = &function, .hint = &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE], .serial = t->serial};
   if (v->plane_count)
     return add_surface(v, t, &pixel, (x + 0.5) * size - v->at->x, (y + 0.5) * size - v->at->y, weight, as);
   visibility_place at;

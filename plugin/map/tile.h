@@ -67,6 +67,7 @@ typedef struct {
   uint8_t layout;         /* TILE_WIDE, … */
   atomic_uchar used;      /* since the cache last looked */
   uint8_t volume;         /* not of surfaces alone; for coarser levels that are made of it, so files do not hold it */
+  uint32_t serial;        /* of this block in its map, from 1 on; for hints, which outlive tiles */
 } tile;
 
 /* What a tile is to hold: pixels in rows, the lowest first. */

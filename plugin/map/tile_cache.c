@@ -121,6 +121,8 @@ void tile_cache_put(tile_cache *cache, uint64_t number, const tile *t, tile_hold
 {
   assert(t && number < cache->count && holder->held < holder->room);
   assert(!atomic_load_explicit(&cache->slots[number], memory_order_relaxed));
+  if (t->kind == TILE_STORED)
+    ((tile *)(size_t)t)->serial = cache->serial += cache->serial == UINT32_MAX ? 2 : 1;   /* nobody else sees it yet */
   tile_touch(t);
   atomic_store(&holder->places[holder->held++], t);
   atomic_store(&cache->slots[number], t);

@@ -48,6 +48,7 @@ typedef struct {
   uint64_t budget;           /* bytes */
   uint64_t bytes, bytes_most, evicted;
   uint64_t hand;
+  uint32_t serial;           /* of the last tile that was put in */
   tile_holder *holders;
   spool *spool;              /* where evicted tiles go; NULL: nowhere, they can be made again */
 } tile_cache;

@@ -114,17 +114,28 @@ static double any_depth(rng *r, const pixels *p, uint32_t place) {
 static void check_look_ups(rng *r, const pixels *p, int times) {
   const visibility_codes *codes = &p->deltas->codes;
   delta_word_shape shape = delta_shape_of(codes);
+  delta_mark marks[TILE_PIXELS];   /* of the last search in each pixel */
+  int marked[TILE_PIXELS] = {0};
   for (int n = 0; n < times; ++n) {
     uint32_t place = rng_below(r, TILE_PIXELS), hint = 0;
     visibility v = tile_visibility(p->deltas, place);
     if (!v.count) continue;
     double z = any_depth(r, p, place);
     assert_seeded(r, visibility_at(&v, z, &hint).c[0] == value_at(p, place, z));
+    visibility_key key = visibility_key_of(codes, z);
+    visibility_place from_mark;
+    delta_walk again = marked[place] ? delta_resume(&shape, v.first, v.records, &marks[place], key.word >> DELTA_SHIFT)
+                                     : delta_begin(&shape, v.first, v.records);
+    marks[place] = (delta_mark){again.at, again.depth, again.fall};
+    marked[place] = 1;
+    int behind = delta_find(codes, &shape, &again, key, &from_mark, &marks[place]);
+    assert_seeded(r, (behind ? visibility_value(&v, &from_mark, 0) : 1) == value_at(p, place, z));
     /* One walk for depths in order. */
     delta_walk walk = delta_begin(&shape, v.first, v.records);
+    delta_mark mark;
     for (int k = 0; k < 4; ++k, z = fmax(z, any_depth(r, p, place))) {
       visibility_place at;
-      int found = delta_find(codes, &shape, &walk, visibility_key_of(codes, z), &at);
+      int found = delta_find(codes, &shape, &walk, visibility_key_of(codes, z), &at, &mark);
       assert_seeded(r, (found ? visibility_value(&v, &at, 0) : 1) == value_at(p, place, z));
     }
   }

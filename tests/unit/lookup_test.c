@@ -131,26 +131,42 @@ static void thin_wall(void **state) {
   stage_close(&s);
 }
 
-/* The hint a worker keeps never changes an answer. */
-static void answers_do_not_depend_on_the_past(void **state) {
-  (void)state;
+/* The hints a worker keeps never change an answer: not in absolute records, not in deltas, not when a tile is another block of memory. */
+static void asks_as_if_for_the_first_time(const char *const *words, int times) {
   enum { HAIRS = 200 };
   static shape hair[HAIRS];
   rng r = rng_seeded(1);
   for (int i = 0; i < HAIRS; ++i)
-    hair[i] = sphere_at(rng_between(&r, -1, 1), rng_between(&r, -1, 1), rng_between(&r, 2, 4), 0.03, 0.3);
-  stage s;
-  stage_open(&s, hair, HAIRS, parallel_at(0, 0, 0, 0, 0, 1), WORDS("resolution 96"));
-  for (int k = 0; k < 5000; ++k) {
-    dsm_receiver at = in_air(rng_between(&r, -1, 1), rng_between(&r, -1, 1), rng_between(&r, 2, 5));
-    dsm_worker *fresh;
-    double a[3], b[3];
-    assert_int_equal(dsm_api.worker_create(s.map, &s.w, &fresh), DSM_OK);
-    dsm_result first = dsm_api.lookup(s.worker, &at, a), second = dsm_api.lookup(fresh, &at, b);
-    assert_seeded(&r, first == second && memcmp(a, b, sizeof a) == 0);
-    dsm_api.worker_destroy(fresh);
+    hair[i] = sphere_at(rng_between(&r, -1, 1), rng_between(&r, -1, 1), rng_between(&r, 2, 4), 0.1, 0.3);
+  stage s, evicting;
+  stage_open(&s, hair, HAIRS, parallel_at(0, 0, 0, 0, 0, 1), words + 1);
+  stage_open(&evicting, hair, HAIRS, parallel_at(0, 0, 0, 0, 0, 1), words);
+  for (int k = 0; k < times; ++k) {
+    double x = rng_between(&r, -1, 1), y = rng_between(&r, -1, 1), z = rng_between(&r, 2, 5);
+    for (int near = 0; near < 8; ++near) {
+      double depth = z + 0.1 * near * rng_between(&r, -1, 1);
+      dsm_receiver at = near & 1 ? in_air(x, y, depth) : on_plane(x, y, depth, 0.3, 0, -1);
+      dsm_worker *fresh;
+      double a[3], b[3], c[3];
+      assert_int_equal(dsm_api.worker_create(s.map, &s.w, &fresh), DSM_OK);
+      dsm_result first = dsm_api.lookup(s.worker, &at, a), second = dsm_api.lookup(fresh, &at, b);
+      assert_seeded(&r, first == second && memcmp(a, b, sizeof a) == 0);
+      assert_seeded(&r, dsm_api.lookup(evicting.worker, &at, c) == second && memcmp(c, b, sizeof c) == 0);
+      dsm_api.worker_destroy(fresh);
+    }
   }
+  dsm_statistics all = {.size = sizeof all}, few = all;
+  dsm_api.statistics(s.map, &all);
+  dsm_api.statistics(evicting.map, &few);
+  assert_true(all.tiles_evicted == 0 && few.tiles_evicted > 0);
+  stage_close(&evicting);
   stage_close(&s);
+}
+
+static void answers_do_not_depend_on_the_past(void **state) {
+  (void)state;
+  asks_as_if_for_the_first_time(WORDS("cache 0.02", "resolution 96"), 600);
+  asks_as_if_for_the_first_time(WORDS("cache 0.02", "resolution 96", "samples 64", "tolerance 0.03"), 600);
 }
 
 int main(void) {

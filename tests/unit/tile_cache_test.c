@@ -76,6 +76,26 @@ static void the_unused_go_first(void **state) {
   tile_cache_destroy(&cache);
 }
 
+/* Whoever remembers something of a tile by its serial cannot take another tile for it, not even where numbers begin again. */
+static void no_two_blocks_have_one_serial(void **state) {
+  (void)state;
+  enum { TIMES = 9 };
+  tile_cache cache;
+  tile_holder holder;
+  uint32_t seen[TIMES];
+  assert_int_equal(tile_cache_create(&cache, 2, 1), DSM_OK);
+  assert_int_equal(tile_cache_join(&cache, &holder), DSM_OK);
+  cache.serial = UINT32_MAX - 3;
+  for (uint64_t i = 0; i < TIMES; ++i) {
+    put(&cache, i % 2, &holder);   /* and the other one goes */
+    seen[i] = atomic_load(&cache.slots[i % 2])->serial;
+    assert_true(seen[i] != 0);
+    for (uint64_t k = 0; k < i; ++k) assert_true(seen[k] != seen[i]);
+  }
+  tile_cache_leave(&cache, &holder);
+  tile_cache_destroy(&cache);
+}
+
 /* Tiles in use are never freed, not even where they alone exceed the budget; neither is the one just put in. */
 static void held_ones_stay(void **state) {
   (void)state;
@@ -308,6 +328,7 @@ static void many_threads_with_a_spool(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_unused_go_first),
+    cmocka_unit_test(no_two_blocks_have_one_serial),
     cmocka_unit_test(held_ones_stay),
     cmocka_unit_test(a_place_is_kept_until_it_is_needed),
     cmocka_unit_test(tiles_without_pixels_cost_nothing),
