@@ -19,37 +19,6 @@ static const double GRAZING = 40, LARGE = 40;
 /* So much of the light that is left in front of the surface must be missing beyond what the surface itself takes. */
 static const double HIDDEN = 0.3;
 
-/* Whether much light is lost between depth z and where `seen` of it is left. */
-static int is_close(const visibility *function, double z, uint32_t channel, double seen)
-{
-  visibility_place place;
-  uint32_t hint = 0;
-  double before = visibility_find(function, visibility_key_of(function->codes, z), &hint, &place) ? visibility_value(function, &place, channel) : 1;
-  return before - seen > CLOSE * before;
-}
-
-/* Under grazing light: whether something else than the surface hides the point, at depth z, from the light, of which `seen` arrives in
- * front of the surface. The surface itself leaves a part of the pixel in front of z that follows from its plane: at least `left`, whether the
- * filter is flat or has a peak. Where that is little, the pixel is blind to what stands on the surface. */
-static int hides_more(view *v, const visibility *function, double z, double du, double dv, const double seen[3],
-                      double weight)
-{
-  const receiver_plane *p = &v->planes[0];
-  double rise = (p->slope_u * du + p->slope_v * dv) / p->reach, left = rise > 0 ? 0.5 - rise : 0.5 - 0.5 * rise;
-  if (left < HIDDEN) {
-    v->blind += weight * (function->channels == 1 ? seen[0] : fmax(seen[0], fmax(seen[1], seen[2])));
-    return 0;
-  }
-  visibility_place at;
-  uint32_t hint = 0;
-  if (!visibility_find(function, visibility_key_of(function->codes, z), &hint, &at))
-    return 0;
-  for (uint32_t c = 0; c < function->channels; c++)
-    if (seen[c] > 2 * VIEW_LEAST && visibility_value(function, &at, c) < (fmin(left, 1) - HIDDEN) * seen[c])
-      return 1;
-  return 0;
-}
-
 /* What is known of a tile before its pixels are read: most have neither colour nor marks, and records of a few lengths. Constants,
  * of which the compiler makes a function each. */
 typedef struct {
@@ -63,7 +32,8 @@ enum { DELTAS = 0, UNKNOWN = 100 };
 /* visibility_find in a pixel that may be asked more than once, in deltas from front to back. */
 typedef struct {
   const visibility *function;
-  search_hint *hint;
+  uint32_t *hint;
+  search_mark *mark;
   uint32_t serial;   /* of the tile */
   int begun;         /* in deltas: the walk is where the last call left it */
   delta_walk walk;
@@ -73,13 +43,13 @@ typedef struct {
 static inline __attribute__((always_inline)) int find_in_deltas(const view *v, searched *pixel, visibility_key key, visibility_place *place)
 {
   const visibility *function = pixel->function;
-  search_hint *hint = pixel->hint;
-  delta_mark later, *mark = pixel->begun ? &later : &hint->mark;
+  search_mark *last = pixel->mark;
+  delta_mark later, *mark = pixel->begun ? &later : &last->mark;
   if (!pixel->begun) {
     pixel->begun = 1;
-    pixel->walk = hint->serial == pixel->serial ? delta_resume(&v->deltas, function->first, function->records, mark, key.word >> DELTA_SHIFT)
+    pixel->walk = last->serial == pixel->serial ? delta_resume(&v->deltas, function->first, function->records, mark, key.word >> DELTA_SHIFT)
                                                 : delta_begin(&v->deltas, function->first, function->records);
-    hint->serial = pixel->serial;
+    last->serial = pixel->serial;
     *mark = (delta_mark){pixel->walk.at, pixel->walk.depth, pixel->walk.fall};
   }
   return delta_find(function->codes, &v->deltas, &pixel->walk, key, place, mark);
@@ -90,8 +60,50 @@ static inline __attribute__((always_inline)) int find(const view *v, searched *p
 {
   if (as.bytes == DELTAS)
     return find_in_deltas(v, pixel, key, place);
-  return as.bytes == UNKNOWN ? visibility_find(pixel->function, key, &pixel->hint->record, place)
-                             : visibility_find_as(pixel->function, key, &pixel->hint->record, place, as.bytes, as.whole);
+  return as.bytes == UNKNOWN ? visibility_find(pixel->function, key, pixel->hint, place)
+                             : visibility_find_as(pixel->function, key, pixel->hint, place, as.bytes, as.whole);
+}
+
+/* visibility_find for what is rarely asked, with a mark in the pixel's deltas or NULL. */
+static int find_again(const visibility *function, const delta_mark *mark, double z, visibility_place *place)
+{
+  visibility_key key = visibility_key_of(function->codes, z);
+  uint32_t hint = 0;
+  if (!mark)
+    return visibility_find(function, key, &hint, place);
+  delta_mark later;
+  delta_word_shape shape = delta_shape_of(function->codes);
+  delta_walk walk = delta_resume(&shape, function->first, function->records, mark, key.word >> DELTA_SHIFT);
+  return delta_find(function->codes, &shape, &walk, key, place, &later);
+}
+
+/* Whether much light is lost between depth z and where `seen` of it is left. */
+static int is_close(const visibility *function, const delta_mark *mark, double z, uint32_t channel, double seen)
+{
+  visibility_place place;
+  double before = find_again(function, mark, z, &place) ? visibility_value(function, &place, channel) : 1;
+  return before - seen > CLOSE * before;
+}
+
+/* Under grazing light: whether something else than the surface hides the point, at depth z, from the light, of which `seen` arrives in
+ * front of the surface. The surface itself leaves a part of the pixel in front of z that follows from its plane: at least `left`, whether the
+ * filter is flat or has a peak. Where that is little, the pixel is blind to what stands on the surface. */
+static int hides_more(view *v, const visibility *function, const delta_mark *mark, double z, double du, double dv, const double seen[3],
+                      double weight)
+{
+  const receiver_plane *p = &v->planes[0];
+  double rise = (p->slope_u * du + p->slope_v * dv) / p->reach, left = rise > 0 ? 0.5 - rise : 0.5 - 0.5 * rise;
+  if (left < HIDDEN) {
+    v->blind += weight * (function->channels == 1 ? seen[0] : fmax(seen[0], fmax(seen[1], seen[2])));
+    return 0;
+  }
+  visibility_place at;
+  if (!find_again(function, mark, z, &at))
+    return 0;
+  for (uint32_t c = 0; c < function->channels; c++)
+    if (seen[c] > 2 * VIEW_LEAST && visibility_value(function, &at, c) < (fmin(left, 1) - HIDDEN) * seen[c])
+      return 1;
+  return 0;
 }
 
 /* Reads a pixel in front of where the receiver's own surface can be. Every plane bounds the surface by itself, so the
@@ -114,6 +126,7 @@ static inline __attribute__((always_inline)) dsm_result add_surface(view *v, con
   visibility_place front = {0, 0, 0, 0, 0}, middle = {0, 0, 0, 0, 0};
   visibility_key key = visibility_key_as(codes, z - (tangent < other ? tangent : other), as.whole);
   int dims = find(v, pixel, key, &front, as);
+  const delta_mark *mark = as.bytes == DELTAS ? &pixel->mark->mark : NULL;
   double seen[3] = {1, 1, 1};
   int in_doubt = 0;
   for (uint32_t c = 0; c < function->channels; c++) {
@@ -121,7 +134,7 @@ static inline __attribute__((always_inline)) dsm_result add_surface(view *v, con
       seen[c] = visibility_value(function, &front, c);
     in_doubt |= v->automatic && tangent <= other && seen[c] > 2 * VIEW_LEAST;
   }
-  if (v->grazing && (tangent <= other || other > LARGE * v->pixel) && hides_more(v, function, z, du, dv, seen, weight))
+  if (v->grazing && (tangent <= other || other > LARGE * v->pixel) && hides_more(v, function, mark, z, du, dv, seen, weight))
     return DSM_TRACE;
   if (in_doubt) {
     visibility_key deeper = visibility_key_as(codes, z - receiver_middle(&v->planes[0], du, dv), as.whole);
@@ -131,7 +144,7 @@ static inline __attribute__((always_inline)) dsm_result add_surface(view *v, con
   }
   for (uint32_t c = 0; c < function->channels; c++) {
     double taken = in_doubt ? seen[c] - visibility_value(function, &middle, c) : 0;
-    if (taken > CONTACT * seen[c] + VIEW_LEAST && (taken > OWN || is_close(function, z - 2 * tangent, c, seen[c])))
+    if (taken > CONTACT * seen[c] + VIEW_LEAST && (taken > OWN || is_close(function, mark, z - 2 * tangent, c, seen[c])))
       return DSM_TRACE;
     *(function->channels == 1 ? &v->lost_grey : &v->lost.c[c]) += weight * (1 - seen[c]);
   }
@@ -151,7 +164,11 @@ static inline __attribute__((always_inline)) dsm_result add_pixel_as(view *v, co
     function = tile_visibility_from(t, place, first);
   if (function.count == 0)
     return DSM_OK;
-  searched pixel = {.function = &function, .hint = &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE], .serial = t->serial};
+  searched pixel = {.function = &function, .serial = t->serial};
+  if (as.bytes == DELTAS)
+    pixel.mark = &v->worker->marks[y % MARK_SIDE * MARK_SIDE + x % MARK_SIDE];
+  else
+    pixel.hint = &v->worker->hints[y % HINT_SIDE * HINT_SIDE + x % HINT_SIDE];
   if (v->plane_count)
     return add_surface(v, t, &pixel, (x + 0.5) * size - v->at->x, (y + 0.5) * size - v->at->y, weight, as);
   visibility_place at;
@@ -210,6 +227,16 @@ static inline __attribute__((always_inline)) dsm_result add_rows(view *v, const 
   return result == DSM_OK ? add(v, t, place + 1, high + tile_records(t, place), x + 1, y + 1, size, weight[3]) : result;
 }
 
+/* Gets ready for a tile's pixels: the point's own depth there, or how to read deltas. Returns whether pixels are plain. */
+static inline int begin_tile(view *v, const tile *t)
+{
+  if (!v->plane_count)
+    v->key = visibility_key_of(&t->codes, v->at->depth - t->near_depth);
+  if (codes_are_deltas(&t->codes))
+    v->deltas = delta_shape_of(&t->codes);
+  return (t->layout & ~TILE_REFINED) == 0;
+}
+
 static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, uint32_t y, double size,
                                     const double weight[4])
 {
@@ -217,13 +244,9 @@ static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, ui
   dsm_result result = worker_tile(v->worker, key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
-  if (!v->plane_count)
-    v->key = visibility_key_of(&t->codes, v->at->depth - t->near_depth);
-  int plain = (t->layout & ~TILE_REFINED) == 0;
-  if (plain && codes_are_deltas(&t->codes)) {
-    v->deltas = delta_shape_of(&t->codes);
+  int plain = begin_tile(v, t);
+  if (plain && codes_are_deltas(&t->codes))
     return add_rows(v, t, x, y, size, weight, add_pixel_of_deltas);
-  }
   switch (plain ? t->codes.record_bits / 8 : 0) {
     case 3: return add_rows(v, t, x, y, size, weight, add_pixel_of_3);   /* the least that a float and a value take is 5 */
     case 4: return add_rows(v, t, x, y, size, weight, add_pixel_of_4);
@@ -240,9 +263,9 @@ static dsm_result add_apart(view *v, uint32_t level, uint32_t x, uint32_t y, dou
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
-  if (!v->plane_count)
-    v->key = visibility_key_of(&t->codes, v->at->depth - t->near_depth);
-  return add_pixel(v, t, place, tile_first(t, place), x, y, size, weight);
+  int plain = begin_tile(v, t);
+  return plain && codes_are_deltas(&t->codes) ? add_pixel_of_deltas(v, t, place, tile_first(t, place), x, y, size, weight)
+                                              : add_pixel(v, t, place, tile_first(t, place), x, y, size, weight);
 }
 
 dsm_result view_add_bilinear(view *v, uint32_t level, double x, double y, double share)

@@ -20,16 +20,16 @@ typedef struct tile_wish {
   void (*tell)(struct tile_wish *wish, const tile_key *key);
 } tile_wish;
 
-/* Where the last search in a pixel ended (LV 3.4). A direct-mapped cache: pixels 16 apart share a place. In absolute records it is without
- * tags, as a wrong hint only costs its search some steps; in deltas a mark counts for the very tile that it was made in, whatever has
- * been evicted since. */
-#define HINT_SIDE 16
+/* Where the last search in a pixel ended (LV 3.4): two direct-mapped caches. That of absolute records is without tags: pixels 32
+ * apart share a place, and a wrong hint only costs its search some steps. In deltas a mark counts for the very tile that it
+ * was made in, whatever has been evicted since. */
+#define HINT_SIDE 32
+#define MARK_SIDE 16
 
 typedef struct {
-  uint32_t record;
-  uint32_t serial;   /* of the mark's tile; 0: no mark */
+  uint32_t serial;   /* of the tile; 0: no mark */
   delta_mark mark;
-} search_hint;
+} search_mark;
 
 struct dsm_worker {
   dsm_map *map;
@@ -39,7 +39,8 @@ struct dsm_worker {
   uint32_t depth;      /* of worker_enter */
   int baking;          /* a host must not look up with a worker whose tile it traces; it is told to trace */
   tile_wish *wish;     /* NULL but within map_tiles_wanted */
-  search_hint hints[HINT_SIDE * HINT_SIDE];
+  uint32_t hints[HINT_SIDE * HINT_SIDE];
+  search_mark marks[MARK_SIDE * MARK_SIDE];
   struct dsm_worker *next;   /* of the map's; under store.mutex */
   _Atomic uint64_t samples;  /* written by its thread alone; see dsm_statistics */
 };
