@@ -108,7 +108,7 @@ static void print_header(const open_map *map)
   struct stat file;
   if (!stat(map->path, &file))
     printf("%-12s %s, %lld bytes, format %u\n", "file", map->path, (long long)file.st_size,
-           open_map_has_depths(map) ? MAP_FORMAT : 1u);
+           (unsigned)map_header_format(&map->header));
   for (uint32_t i = 0; i < count; i++)
     printf("%-12s %s\n", i && !strcmp(lines[i].name, lines[i - 1].name) ? "" : lines[i].name, lines[i].text);
   for (uint32_t i = 0; i < map->header.scene_count; i++)
