@@ -33,6 +33,9 @@ dsm_result map_file_open(const char *path, map_header *header, map_file **file, 
 dsm_result map_file_tile(map_file *file, const tile_key *key, const tile **out, map_reason *why);
 void map_file_close(map_file *file);
 
+/* [any thread] Bytes of the file that a level of all faces takes. */
+uint64_t map_file_level_bytes(const map_file *file, uint32_t level);
+
 /* Hands over one tile of the map that is being written; it must live until the next call. Only DSM_OK goes on. */
 typedef dsm_result (*map_tile_giver)(void *data, const tile_key *key, const tile **out);
 

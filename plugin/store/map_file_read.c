@@ -221,6 +221,14 @@ dsm_result map_file_tile(map_file *file, const tile_key *key, const tile **out, 
   return result;
 }
 
+uint64_t map_file_level_bytes(const map_file *file, uint32_t level)
+{
+  uint64_t sum = 0;
+  for (uint32_t part = 0; part + 1 < file->parts.count; part++)
+    sum += file->parts.keys[part].level == level ? exr_layout_bytes(file->layout, part) : 0;
+  return sum;
+}
+
 void map_file_close(map_file *file)
 {
   if (!file)
