@@ -16,8 +16,7 @@ int records_are_possible(const visibility_codes *codes)
 int deltas_are_possible(const visibility_codes *codes)
 {
   uint32_t bits = codes->record_bits, depth_bits = codes->value_shift;
-  return codes_are_whole(codes) && bits >= LEAST_DELTA_BITS && bits <= MOST_DELTA_BITS && depth_bits >= LEAST_DEEPER_BITS
-      && depth_bits + LEAST_FALL_BITS <= bits;
+  return codes_are_whole(codes) && bits <= MOST_DELTA_BITS && depth_bits >= LEAST_DEEPER_BITS && depth_bits + LEAST_FALL_BITS <= bits;
 }
 
 /* The least code behind all depths, of absolute records. */
@@ -105,11 +104,9 @@ static int tile_of_deltas_is_sound(const tile *t)
   return 1;
 }
 
-int tile_is_sound(const tile *t)
+static int tile_of_depths_and_values_is_sound(const tile *t)
 {
   const visibility_codes *codes = &t->codes;
-  if (codes_are_deltas(codes))
-    return tile_of_deltas_is_sound(t);
   if (t->layout & TILE_COLOURED && codes->record_bits < 2 * codes->value_bits)
     return 0;
   uint64_t end = end_of_depths(codes);
@@ -119,4 +116,12 @@ int tile_is_sound(const tile *t)
       return 0;
   }
   return 1;
+}
+
+int tile_is_sound(const tile *t)
+{
+  for (uint32_t i = 0; i < TILE_PIXELS; i++)
+    if (tile_is_marked(t, i) && tile_records(t, i) > 0)
+      return 0;
+  return codes_are_deltas(&t->codes) ? tile_of_deltas_is_sound(t) : tile_of_depths_and_values_is_sound(t);
 }

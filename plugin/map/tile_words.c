@@ -102,7 +102,7 @@ static int read_codes(const uint32_t *words, visibility_codes *codes)
   return records_are_possible(codes);
 }
 
-/* What pixels there are, and how many records all of them have; 0: they contradict each other. */
+/* What pixels there are, and how many records all of them have; 0: a coloured one has half a vertex. */
 static int read_plan(const uint32_t *words, const places *at, uint32_t layout, tile_plan *plan, uint64_t *records)
 {
   *records = 0;
@@ -111,7 +111,7 @@ static int read_plan(const uint32_t *words, const places *at, uint32_t layout, t
     plan->coloured[i] = layout & TILE_COLOURED && bit(words + at->coloured, i);
     plan->marked[i] = layout & TILE_MARKED && bit(words + at->marked, i);
     plan->need[i] = (unsigned char)(layout & TILE_REFINED ? byte(words + at->need, i) : 0);
-    if ((plan->marked[i] && count > 0) || (plan->coloured[i] && count % 2))
+    if (plan->coloured[i] && count % 2)
       return 0;
     plan->count[i] = plan->coloured[i] ? count / 2 : count;
     *records += count;

@@ -5,8 +5,9 @@
  *   part "f0.l0"       deep, in tiles of 16 x 16 pixels: face 0, level 0. One channel of whole numbers, "words"
  *   part "f1.l0" …     the other faces, then the coarser levels
  *   part "tiles"       last: a deep pixel a tile, in the order of tile_store_number, 256 to a tile of the part. One sample
- *                      where the tile is stored, none where it is lit: near depth (the halves of a double), tolerance, checksum. After the last tile one sample more, the seal: how many
- *                      tiles there are, and a checksum of all records and of the header
+ *                      where the tile is stored, none where it is lit: near depth (the halves of a double), tolerance,
+ *                      checksum. After the last tile one sample more, the seal: how many tiles there are, and a checksum
+ *                      of all records and of the header
  *
  * Row 0 of a part is the lowest one of the face; pixels beyond the face's edge are empty. The first pixel of a tile has all words of it
  * (map/tile_words.h), as memory holds it: floats in channels of their own would take two to three times the bytes. So a map that was read

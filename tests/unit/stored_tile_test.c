@@ -59,7 +59,8 @@ static void what_cannot_be_is_not_written(void **state) {
   (void)state;
   tile_plan plan = {.count = {[7] = 2}};
   deep_tile deep = {.words = NULL};
-  for (int wrong = 0; wrong < 3; ++wrong) {
+  for (int wrong = 0; wrong < 4; ++wrong) {
+    plan.marked[7] = wrong == 3;
     tile *t = tile_create(&plan);
     tile_put(t, 7, 0, 0, wrong == 1 ? 3 : 1, 5);
     tile_put(t, 7, 1, 0, 2, wrong == 2 ? 6 : 5);

@@ -301,8 +301,11 @@ static void grey_takes_one_channel(void **state) {
   for (int coloured = 0; coloured < 2; ++coloured) {
     tile_plan plan = {.count = {[4] = 80, [5] = 80}, .coloured = {[4] = (unsigned char)coloured}};
     tile *t = tile_create(&plan);
-    for (uint32_t i = 0; i < 80; ++i)
-      for (uint32_t c = 0; c < (coloured ? 3 : 1); ++c) tile_put(t, 4, i, c, 0.1f * (float)i, (uint16_t)((80 - i) * 700 + c)), tile_put(t, 5, i, 0, 0.1f * (float)i, 9);
+    for (uint32_t i = 0; i < 80; ++i) {
+      float z = 0.1f * (float)i;
+      tile_put(t, 5, i, 0, z, 9);
+      for (uint32_t c = 0; c < (coloured ? 3 : 1); ++c) tile_put(t, 4, i, c, z, (uint16_t)((80 - i) * 700 + c));
+    }
     words[coloured] = tile_words_count(t);
     tile_destroy(t);
   }
