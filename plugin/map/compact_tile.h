@@ -7,9 +7,7 @@
 
 /* The tile that tile_create has made, in the shortest records that hold exactly its depths and values: depths as multiples
  * of the largest power of two that divides all of them, if that takes no more than MOST_CODE_BITS; values in the fewest bits that
- * tell them. So what the numbers are decides, and not who has made them: a tile that is read from a file answers as the one that
- * was saved. Takes `t`; gives it back if there is nothing to be won, or no
- * memory for a moment. */
+ * tell them. Takes `t`; gives it back if there is nothing to be won, or no memory for a moment. */
 tile *tile_compact(tile *t);
 
 #endif

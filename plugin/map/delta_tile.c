@@ -4,9 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Records of a pixel; a look-up reads half of them on average. */
-enum { LONGEST = 500 };
-
 /* Look-ups are slow where records are no vertices, so such a record is as bad as this many. */
 enum { ADDING_COSTS = 2 };
 
@@ -179,7 +176,7 @@ static int plan_tile(const tile *from, const tile_deltas *all, delta_shape shape
       d += all->count[i];
     }
     plan->count[i] = counted.count;
-    if (counted.count > LONGEST)
+    if (counted.count > MOST_DELTAS)
       return 0;
   }
   return 1;
@@ -219,7 +216,7 @@ tile *delta_tile_of(const tile *from, const visibility_codes *codes, size_t most
     return NULL;
   for (uint32_t i = 0; i < TILE_PIXELS; i++) {
     uint32_t count = tile_visibility(from, i).count;
-    if (count > LONGEST)
+    if (count > MOST_DELTAS)
       return NULL;
     vertices += count;
   }

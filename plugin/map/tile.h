@@ -54,7 +54,7 @@ enum { NEED_OCTAVE = 16, NEED_MOST = 254, NEED_ALWAYS = 255 };
 
 typedef enum { TILE_STORED, TILE_LIT, TILE_FAILED } tile_kind;
 
-enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4,   /* what of the optional parts a tile has */
+enum { TILE_WIDE = 1, TILE_COLOURED = 2, TILE_MARKED = 4,   /* what of the optional parts a tile has, in files, too */
        TILE_DEPTHS = 8,                                      /* alone: no visibility at all, see depth_tile.h */
        TILE_REFINED = 16 };                                  /* the need of each pixel is at the end of the block */
 

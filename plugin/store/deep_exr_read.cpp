@@ -145,6 +145,13 @@ int DeepRead(deep_reader *reader, uint32_t part, uint32_t x, uint32_t y, deep_ti
         for (int p = 0; p < DEEP_PIXELS; p++)
         {
             const char *sample = static_cast<const char *>(data.data_ptr(p, 0, 0));
+            if (places.size() == 1)
+            {
+                if (tile->count[p])
+                    memcpy(word, sample, tile->count[p] * sizeof *word);
+                word += tile->count[p];
+                continue;
+            }
             for (uint32_t s = 0; s < tile->count[p]; s++, sample += places.size() * sizeof *word)
                 for (int place : places)
                     memcpy(word++, sample + size_t(place) * sizeof *word, sizeof *word);

@@ -235,27 +235,43 @@ void exr_layout_close(exr_layout *l)
   free(l);
 }
 
-/* `b` is what follows the five numbers of every tile. */
-static int sizes_fit(const exr_part *part, const unsigned char *b, uint64_t left)
+/* `b` is what follows the five numbers of every tile. How many bytes follow it, or UINT64_MAX if that makes no sense. */
+static uint64_t packed_size(const exr_part *part, const unsigned char *b, uint64_t left)
 {
   if (!part->deep)
-    return u32_of(b) <= left;
+    return u32_of(b) <= left ? u32_of(b) : UINT64_MAX;
   uint64_t counts = u64_of(b), packed = u64_of(b + 8), samples = u64_of(b + 16);
-  return counts <= 4 * DEEP_PIXELS && packed <= left - (counts < left ? counts : left) && counts <= left
-      && samples <= MOST_PACKING * packed;
+  int fits = counts <= 4 * DEEP_PIXELS && packed <= left - (counts < left ? counts : left) && counts <= left
+          && samples <= MOST_PACKING * packed;
+  return fits ? counts + packed : UINT64_MAX;
 }
 
-int exr_layout_tile(const exr_layout *l, uint32_t index, uint32_t x, uint32_t y)
+/* Bytes of a tile, or 0: it is not where it should be. */
+static uint64_t tile_bytes(const exr_layout *l, uint32_t index, uint32_t x, uint32_t y)
 {
   unsigned char b[HEAD + DEEP_SIZES] = {0};
-  if (index >= l->part_count || x >= l->parts[index].across || y >= l->parts[index].up)
-    return 0;
   const exr_part *part = &l->parts[index];
   size_t less = l->alone ? 4 : 0, head = HEAD + (part->deep ? DEEP_SIZES : FLAT_SIZES) - less;
   if (!bytes_at(l, part->table + 8 * ((uint64_t)y * part->across + x), b, 8))
     return 0;
   uint64_t place = u64_of(b);
   memset(b, 0, sizeof b);   /* the number of a part that is alone */
-  return bytes_at(l, place, b + less, head) && u32_of(b) == index && u32_of(b + 4) == x && u32_of(b + 8) == y
-      && u32_of(b + 12) == 0 && u32_of(b + 16) == 0 && sizes_fit(part, b + HEAD, l->size - place - head);
+  if (!bytes_at(l, place, b + less, head) || u32_of(b) != index || u32_of(b + 4) != x || u32_of(b + 8) != y
+      || u32_of(b + 12) != 0 || u32_of(b + 16) != 0)
+    return 0;
+  uint64_t packed = packed_size(part, b + HEAD, l->size - place - head);
+  return packed < UINT64_MAX ? head + packed : 0;
+}
+
+int exr_layout_tile(const exr_layout *l, uint32_t index, uint32_t x, uint32_t y)
+{
+  return index < l->part_count && x < l->parts[index].across && y < l->parts[index].up && tile_bytes(l, index, x, y) > 0;
+}
+
+uint64_t exr_layout_bytes(const exr_layout *l, uint32_t index)
+{
+  uint64_t sum = 0;
+  for (uint64_t i = 0; index < l->part_count && i < l->parts[index].tiles; i++)
+    sum += 8 + tile_bytes(l, index, (uint32_t)(i % l->parts[index].across), (uint32_t)(i / l->parts[index].across));
+  return sum;
 }

@@ -23,5 +23,7 @@ void exr_layout_close(exr_layout *layout);   /* may be NULL */
 
 /* [any] Whether tile (x, y) of a part lies in the file and takes no more memory than its bytes can fill. */
 int exr_layout_tile(const exr_layout *layout, uint32_t part, uint32_t x, uint32_t y);
+/* [any] Bytes of the file that a part's tiles take, and what says where they are; of those tiles that are where they should be. */
+uint64_t exr_layout_bytes(const exr_layout *layout, uint32_t part);
 
 #endif

@@ -17,7 +17,7 @@ struct map_file {
   deep_reader *reader;
   char *path;
   map_parts parts;
-  uint32_t channels;
+  stored_kind kind;
   tile_record *records;     /* one for each tile */
   pthread_mutex_t mutex;    /* of the reader and the tile */
   deep_tile deep;
@@ -132,8 +132,8 @@ static dsm_result check_content(map_file *file, uint64_t size, map_header *heade
   dsm_result result = map_header_read(get_attribute, file, file->path, header, why);
   if (result != DSM_OK)
     return result;
-  map_parts_lay(&file->parts, &header->projection, map_header_channels(header));
-  file->channels = map_header_channels(header);
+  file->kind = map_header_kind(header);
+  map_parts_lay(&file->parts, &header->projection, file->kind);
   if (file->parts.tile_count > size / LEAST_TILE)
     result = map_refused(why, "The shadow map \"%s\" is damaged or cut off: it is too short for its tiles.", file->path);
   else if (!file->exr->has_parts(file->reader, file->parts.parts, file->parts.count))
@@ -203,7 +203,7 @@ static dsm_result read_tile(map_file *file, const tile_key *key, const tile **ou
   }
   if (!file->exr->read(file->reader, part, key->x, key->y, &file->deep, error))
     return DSM_REFUSED;
-  return tile_from_deep(&file->deep, file->channels, record, number, out);
+  return restore_tile(&file->deep, file->kind, record, number, out);
 }
 
 dsm_result map_file_tile(map_file *file, const tile_key *key, const tile **out, map_reason *why)
@@ -219,6 +219,14 @@ dsm_result map_file_tile(map_file *file, const tile_key *key, const tile **out, 
   else if (result != DSM_OK)
     map_no_memory(why);
   return result;
+}
+
+uint64_t map_file_level_bytes(const map_file *file, uint32_t level)
+{
+  uint64_t sum = 0;
+  for (uint32_t part = 0; part + 1 < file->parts.count; part++)
+    sum += file->parts.keys[part].level == level ? exr_layout_bytes(file->layout, part) : 0;
+  return sum;
 }
 
 void map_file_close(map_file *file)

@@ -17,7 +17,7 @@ typedef struct {
   deep_writer *writer;
   const char *path;          /* as the user knows it */
   map_parts parts;
-  uint32_t channels;
+  stored_kind kind;
   tile_record *records;
   deep_tile deep;
   map_reason *why;
@@ -50,9 +50,8 @@ static void describe(const map_header *h, char *text, size_t size)
              "near depth, which is in part \"tiles\". Rows run upwards. Depth is the distance from the light's %s.", light, end);
     return;
   }
-  snprintf(text, size, "Deep shadow map of %s. V (VR, VG, VB) is the share of light left at depth Z, linear between samples and "
-           "1 in front of the first; Z is counted from the tile's near depth, which is in part \"tiles\". Rows run "
-           "upwards. Depth is the distance from the light's %s.", light, end);
+  snprintf(text, size, "Deep shadow map of %s, packed: the first pixel of each tile holds all 16 x 16 of them. \"dsmtool export\" makes "
+           "a standard deep image of it. Rows run upwards. Depth is the distance from the light's %s.", light, end);
 }
 
 static dsm_result open_writer(writing *w, const char *temporary, const map_header *header, const attribute_list *list)
@@ -77,18 +76,14 @@ static dsm_result write_tile(writing *w, uint32_t part, const tile_key *key, con
   uint64_t number = map_parts_number(&w->parts, key);
   if (t->kind == TILE_FAILED)
     return map_refused(w->why, "The shadow map \"%s\" is not saved: some of its tiles could not be baked.", w->path);
-  w->records[number] = t->kind == TILE_LIT ? record_of_lit : tile_record_of(t, number);
-  dsm_result result = DSM_OK;
-  if (t->kind == TILE_LIT && w->channels != DEPTH_CHANNELS)
-    memset(w->deep.count, 0, sizeof w->deep.count);
-  else
-    result = tile_to_deep(t, w->channels, &w->deep);
+  dsm_result result = store_tile(t, w->kind, &w->deep);
   if (result == DSM_NO_MEMORY)
     return map_no_memory(w->why);
   if (result != DSM_OK) {
-    map_refused(w->why, "The shadow map \"%s\" cannot be written: colour is not where it should be.", w->path);
+    map_refused(w->why, "The shadow map \"%s\" cannot be written: one of its tiles is not as it should be.", w->path);
     return result;
   }
+  w->records[number] = t->kind == TILE_LIT ? record_of_lit : tile_record_of(t, &w->deep, number);
   return w->exr->write(w->writer, part, key->x, key->y, &w->deep, &error) ? DSM_OK : cannot_write(w, &error);
 }
 
@@ -149,7 +144,7 @@ static dsm_result check_written(const writing *w, const char *temporary)
 dsm_result map_file_write(const char *path, const map_header *header, map_tile_giver give, void *data,
                           int (*progress)(void *data, double share), map_reason *why)
 {
-  writing w = {.path = path, .why = why, .channels = map_header_channels(header)};
+  writing w = {.path = path, .why = why, .kind = map_header_kind(header)};
   deep_error error = {""};
   new_file file;
   w.exr = deep_exr_load(&error);
@@ -158,7 +153,7 @@ dsm_result map_file_write(const char *path, const map_header *header, map_tile_g
   dsm_result result = new_file_create(path, &file, why);
   if (result != DSM_OK)
     return result;
-  map_parts_lay(&w.parts, &header->projection, w.channels);
+  map_parts_lay(&w.parts, &header->projection, w.kind);
   w.records = malloc((w.parts.tile_count + 1) * sizeof *w.records);
   attribute_list list = {NULL, 0, 0};
   result = w.records && map_header_write(header, &list) == DSM_OK ? DSM_OK : map_no_memory(why);

@@ -9,17 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "store/stored_tile.h"
-
 enum { MOST_SCENES = 65536, TEXT = 600 };
 
 static const char *const light_words[] = {"point", "spot", "parallel"};
 static const char *const filter_words[] = {"box", "triangle", "gaussian"};
 static const char *const depth_words[] = {"regular", "jittered"};
 
-uint32_t map_header_channels(const map_header *header)
+uint32_t map_header_format(const map_header *header)
 {
-  return header->block == BLOCK_SHADOW_MAP ? DEPTH_CHANNELS : header->coloured ? COLOURED_CHANNELS : GREY_CHANNELS;
+  return header->block == BLOCK_SHADOW_MAP ? DEPTHS_FORMAT : DEEP_FORMAT;
+}
+
+stored_kind map_header_kind(const map_header *header)
+{
+  return header->block == BLOCK_SHADOW_MAP ? STORED_DEPTHS : header->coloured ? STORED_COLOURED : STORED_GREY;
 }
 
 void map_header_free(map_header *header)
@@ -174,7 +177,7 @@ dsm_result map_header_write(const map_header *header, attribute_list *list)
   if (!plain_numbers(&style))
     return DSM_NO_MEMORY;
   int depths = header->block == BLOCK_SHADOW_MAP;
-  dsm_result result = put(list, "dsm:format", "%u", depths ? 2u : 1u);
+  dsm_result result = put(list, "dsm:format", "%u", (unsigned)map_header_format(header));
   if (result == DSM_OK && depths)
     result = put(list, "dsm:map", "depths");
   if (result == DSM_OK)
@@ -398,9 +401,12 @@ dsm_result map_header_read(const char *(*get)(void *data, const char *name), voi
   if (!format)
     return map_refused(why, "\"%s\" is an OpenEXR image, but not a shadow map.", path);
   unsigned long number = strtoul(format, NULL, 10);
-  if (number > MAP_FORMAT)
+  if (number > NEWEST_FORMAT)
     return map_refused(why, "The shadow map \"%s\" has format %lu, and this program knows only formats up to %u: it was "
-                       "written by a newer one.", path, number, MAP_FORMAT);
+                       "written by a newer one.", path, number, (unsigned)NEWEST_FORMAT);
+  if (number == 1)
+    return map_refused(why, "The shadow map \"%s\" has format 1, and this program reads only formats from %u on: it was written by an "
+                       "older one. Bake the map again, with save_file.", path, (unsigned)DEPTHS_FORMAT);
   number_style style;
   if (!plain_numbers(&style))
     return map_no_memory(why);

@@ -7,8 +7,10 @@
 #include "core/settings.h"
 #include "store/deep_exr.h"
 #include "store/map_reason.h"
+#include "store/stored_tile.h"
 
-#define MAP_FORMAT 2u   /* grows when an older program would misread a file. 1: deep maps. 2: maps of depths */
+/* Formats of files, and the newest: one more whenever an older program would misread a file. Deep maps were of format 1 before. */
+enum { DEPTHS_FORMAT = 2, DEEP_FORMAT = 3, NEWEST_FORMAT = 3 };
 
 #define DIGEST_CHARS 41   /* a SHA-1 in hexadecimal and its end */
 
@@ -38,8 +40,9 @@ typedef struct {
 
 void map_header_free(map_header *header);
 
-/* Of the file's parts with pixels; see stored_tile.h. */
-uint32_t map_header_channels(const map_header *header);
+uint32_t map_header_format(const map_header *header);
+/* Of the map's tiles in a file. */
+stored_kind map_header_kind(const map_header *header);
 
 /* The header as attributes of a file, "dsm:…", in one fixed order; read back, they give a header with the same bits. */
 typedef struct {

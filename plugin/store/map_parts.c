@@ -8,6 +8,7 @@
 
 enum { TABLE_ACROSS = 32, RECORD_WORDS = 4 };
 
+static const char *const depth_channel = "Z", *const words_channel = "words";
 static const char *const record_channels[RECORD_WORDS] = {"nearHigh", "nearLow", "tolerance", "checksum"};
 enum { TOLERANCE = 2, CHECKSUM = 3 };
 
@@ -28,9 +29,9 @@ static uint32_t tiles_for(uint32_t pixels, uint32_t level)
   return (level_pixels(pixels, level) + TILE_SIDE - 1) / TILE_SIDE;
 }
 
-void map_parts_lay(map_parts *m, const projection *p, uint32_t channels)
+void map_parts_lay(map_parts *m, const projection *p, stored_kind kind)
 {
-  int flat = channels == DEPTH_CHANNELS;
+  int flat = kind == STORED_DEPTHS;
   memset(m, 0, sizeof *m);
   for (uint32_t level = 0; level < MAX_LEVELS; level++)
     for (uint32_t i = 0; i < p->count; i++) {
@@ -38,9 +39,9 @@ void map_parts_lay(map_parts *m, const projection *p, uint32_t channels)
       if (level >= projection_levels(p, i))
         continue;
       deep_part *part = &m->parts[m->count];
-      *part = part_with(channels == COLOURED_CHANNELS ? coloured_channels : grey_channels, channels,   /* Z is the first */
-                        tiles_for(f->width, level), tiles_for(f->height, level));
+      *part = part_with(flat ? &depth_channel : &words_channel, 1, tiles_for(f->width, level), tiles_for(f->height, level));
       part->flat = flat;
+      part->integers = !flat;
       snprintf(part->name, sizeof part->name, flat ? "f%u" : "f%u.l%u", (unsigned)i, (unsigned)level);
       m->part_of[i][level] = m->count;
       m->first[m->count] = m->tile_count;

@@ -17,8 +17,7 @@ typedef struct {
   uint64_t tile_count;
 } map_parts;
 
-/* `channels`: of a part with pixels, DEPTH_CHANNELS, … */
-void map_parts_lay(map_parts *parts, const projection *p, uint32_t channels);
+void map_parts_lay(map_parts *parts, const projection *p, stored_kind kind);
 
 static inline uint64_t map_parts_number(const map_parts *parts, const tile_key *key)
 {

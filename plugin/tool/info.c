@@ -61,17 +61,17 @@ static double ratio(double a, double b)
   return b > 0 ? a / b : 0;
 }
 
-static void print_levels(const level_sum *sums)
+static void print_levels(const map_file *file, const level_sum *sums)
 {
   uint64_t total = 0;
-  printf("\n%5s %12s %10s %10s %12s %12s %14s %14s\n", "level", "pixels", "stored", "lit tiles", "vertices", "a pixel",
-         "bytes", "a vertex");
+  printf("\n%5s %12s %10s %10s %12s %12s %14s %10s %14s\n", "level", "pixels", "stored", "lit tiles", "vertices", "a pixel",
+         "bytes", "a vertex", "in the file");
   for (int level = 0; level < MAX_LEVELS && sums[level].pixels; level++) {
     const level_sum *s = &sums[level];
-    printf("%5d %12llu %10llu %10llu %12llu %12.2f %14llu %14.2f\n", level, (unsigned long long)s->pixels,
+    printf("%5d %12llu %10llu %10llu %12llu %12.2f %14llu %10.2f %14llu\n", level, (unsigned long long)s->pixels,
            (unsigned long long)s->stored, (unsigned long long)s->lit, (unsigned long long)s->vertices,
            ratio((double)s->vertices, (double)s->dimmed), (unsigned long long)s->bytes,
-           ratio((double)s->bytes, (double)s->vertices));
+           ratio((double)s->bytes, (double)s->vertices), (unsigned long long)map_file_level_bytes(file, (uint32_t)level));
     total += s->bytes;
   }
   printf("All levels together take %llu bytes in memory, %.2f times the finest. Pixels that are lit do not count in\n"
@@ -108,7 +108,7 @@ static void print_header(const open_map *map)
   struct stat file;
   if (!stat(map->path, &file))
     printf("%-12s %s, %lld bytes, format %u\n", "file", map->path, (long long)file.st_size,
-           open_map_has_depths(map) ? MAP_FORMAT : 1u);
+           (unsigned)map_header_format(&map->header));
   for (uint32_t i = 0; i < count; i++)
     printf("%-12s %s\n", i && !strcmp(lines[i].name, lines[i - 1].name) ? "" : lines[i].name, lines[i].text);
   for (uint32_t i = 0; i < map->header.scene_count; i++)
@@ -134,7 +134,7 @@ static int print_map(const open_map *map, void *unused)
   printf("%-12s %llu of %llu at level 0 store three channels, %llu are marked (ray-traced, as light can grow there)\n",
          "pixels", (unsigned long long)finest->coloured, (unsigned long long)finest->pixels,
          (unsigned long long)finest->marked);
-  print_levels(sums);
+  print_levels(map->file, sums);
   print_histogram(finest);
   return STATUS_FINE;
 }
@@ -142,7 +142,7 @@ static int print_map(const open_map *map, void *unused)
 int info_run(int argc, char **argv)
 {
   static const struct argp parser = {NULL, one_path, "MAP", "Says in plain words what a shadow map is: its light, frame "
-    "and settings, and for every level its pixels, tiles, vertices and bytes in memory.", NULL, NULL, NULL};
+    "and settings, and for every level its pixels, tiles, vertices, and bytes in memory and in the file.", NULL, NULL, NULL};
   const char *path = NULL;
   parse_arguments(&parser, argc, argv, &path);
   return with_open_map(open_map_begin, path, print_map, NULL);

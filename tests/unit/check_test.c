@@ -70,8 +70,21 @@ static dsm_result give(void *data, const tile_key *key, const tile **out) {
   return DSM_OK;
 }
 
-/* Writes the map, checks it, and returns the exit status; `said` is what was printed to the error output. */
-static int check(content *c, char *said, size_t size) {
+static void flip_byte(const char *path, double share) {
+  FILE *f = fopen(path, "r+b");
+  assert_non_null(f);
+  assert_int_equal(fseek(f, 0, SEEK_END), 0);
+  long at = (long)(share * (double)ftell(f));
+  assert_int_equal(fseek(f, at, SEEK_SET), 0);
+  int was = fgetc(f);
+  assert_int_equal(fseek(f, at, SEEK_SET), 0);
+  assert_true(was != EOF && fputc(was ^ 0x55, f) != EOF);
+  assert_int_equal(fclose(f), 0);
+}
+
+/* Writes the map, checks it, and returns the exit status; `said` is what was printed to the error output. `flipped`: how far
+ * behind the file's beginning a byte is damaged before, as a share of its size; or -1. */
+static int check(content *c, char *said, size_t size, double flipped) {
   char path[] = "check_test_XXXXXX", log[] = "check_log_XXXXXX", name[] = "dsmtool check", text[MAP_REASON_SIZE] = "";
   char *words[] = {name, path, NULL};
   map_reason why = {text, sizeof text};
@@ -81,6 +94,7 @@ static int check(content *c, char *said, size_t size) {
   assert_true(map >= 0 && errors >= 0 && before >= 0);
   close(map);
   if (map_file_write(path, &header, give, c, NULL, &why) != DSM_OK) fail_msg("%s", text);
+  if (flipped >= 0) flip_byte(path, flipped);
   fflush(stderr);
   dup2(errors, STDERR_FILENO);
   int status = check_run(2, words);
@@ -100,14 +114,14 @@ static void a_good_map(void **state) {
   content c;
   char said[2000];
   make_content(&c);
-  assert_int_equal(check(&c, said, sizeof said), STATUS_FINE);
+  assert_int_equal(check(&c, said, sizeof said, -1), STATUS_FINE);
   assert_string_equal(said, "");
   free_content(&c);
 }
 
 static void expect(content *c, const char *sentence) {
   char said[4000];
-  int status = check(c, said, sizeof said);
+  int status = check(c, said, sizeof said, -1);
   if (status != STATUS_TROUBLE || !strstr(said, sentence)) fail_msg("status %d, wanted '%s', said '%s'", status, sentence, said);
   assert_non_null(strstr(said, "is damaged: 1 of "));
   free_content(c);
@@ -120,12 +134,6 @@ static void what_is_wrong_with_a_pixel(void **state) {
   (void)state;
   content c;
   make_content(&c);
-  tile_put(c.tiles[0], PLACE, 2, 0, 2, 30001);
-  expect(&c, "is damaged at tile 0, 0 of level 0 of face 0");   /* it is not even read */
-  make_content(&c);
-  tile_put(c.tiles[0], PLACE, 2, 0, 0.5f, 10000);
-  expect(&c, "is damaged at tile 0, 0 of level 0 of face 0");
-  make_content(&c);
   tile_put(c.tiles[0], PLACE, 2, 0, 3.25f, 10000);
   expect(&c, SPOILT "has a depth behind the casters.");
   make_content(&c);
@@ -135,6 +143,22 @@ static void what_is_wrong_with_a_pixel(void **state) {
   make_content(&c);
   c.tiles[0]->near_depth = 3;
   expect(&c, SPOILT "has a depth in front of the casters.");
+}
+
+/* Whatever is damaged in the file is a tile that is named, or the whole map. */
+static void a_damaged_tile_is_named(void **state) {
+  (void)state;
+  content c;
+  char said[4000];
+  int named = 0;
+  make_content(&c);
+  for (int i = 0; i < 60; ++i) {
+    if (check(&c, said, sizeof said, 0.3 + 0.0116 * i) == STATUS_FINE) continue;
+    assert_true(strstr(said, "is damaged") || strstr(said, "is not a shadow map"));
+    named += strstr(said, "is damaged at tile 0, 0 of level 0 of face 0") != NULL;
+  }
+  assert_true(named > 0);
+  free_content(&c);
 }
 
 static void nothing_lies_outside_a_face(void **state) {
@@ -155,6 +179,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_good_map),
     cmocka_unit_test(what_is_wrong_with_a_pixel),
+    cmocka_unit_test(a_damaged_tile_is_named),
     cmocka_unit_test(nothing_lies_outside_a_face),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -31,7 +31,7 @@ static dsm_result read_whole(const char *path) {
   map_parts parts;
   dsm_result result = map_file_open(path, &header, &file, &why), worst = result;
   if (result != DSM_OK) return result;
-  map_parts_lay(&parts, &header.projection, map_header_channels(&header));
+  map_parts_lay(&parts, &header.projection, map_header_kind(&header));
   for (uint32_t part = 0; part + 1 < parts.count; ++part) {
     tile_key key = parts.keys[part];
     for (key.y = 0; key.y < parts.parts[part].up; ++key.y)

@@ -70,14 +70,14 @@ static void every_depth_counts(void **state) {
   for (int k = 0; k < 300; ++k) {
     const tile *t = random_depths(&r), *back;
     deep_tile deep = {.words = NULL};
-    tile_record record = tile_record_of(t, 7);
-    assert_int_equal(tile_to_deep(t, DEPTH_CHANNELS, &deep), DSM_OK);
-    assert_int_equal(tile_from_deep(&deep, DEPTH_CHANNELS, &record, 7, &back), DSM_OK);
+    assert_int_equal(store_tile(t, STORED_DEPTHS, &deep), DSM_OK);
+    tile_record record = tile_record_of(t, &deep, 7);
+    assert_int_equal(restore_tile(&deep, STORED_DEPTHS, &record, 7, &back), DSM_OK);
     assert_true(same_tiles(t, back));
     tile_destroy(back);
-    assert_int_equal(tile_from_deep(&deep, DEPTH_CHANNELS, &record, 8, &back), DSM_REFUSED);
+    assert_int_equal(restore_tile(&deep, STORED_DEPTHS, &record, 8, &back), DSM_REFUSED);
     deep.words[rng_below(&r, TILE_PIXELS)] ^= 1u << rng_below(&r, 32);
-    assert_seeded(&r, tile_from_deep(&deep, DEPTH_CHANNELS, &record, 7, &back) == DSM_REFUSED && !back);
+    assert_seeded(&r, restore_tile(&deep, STORED_DEPTHS, &record, 7, &back) == DSM_REFUSED && !back);
     free(deep.words);
     tile_destroy(t);
   }
@@ -91,7 +91,7 @@ static void every_depth_counts(void **state) {
       if (k == 3) memcpy(&deep.words[i], &one, sizeof one);
     }
     if (k < 3) memcpy(&deep.words[9], &odd[k], sizeof odd[k]);
-    assert_int_equal(tile_from_deep(&deep, DEPTH_CHANNELS, &record_of_lit, 0, &back), DSM_REFUSED);
+    assert_int_equal(restore_tile(&deep, STORED_DEPTHS, &record_of_lit, 0, &back), DSM_REFUSED);
     free(deep.words);
   }
 }

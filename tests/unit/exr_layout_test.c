@@ -96,6 +96,8 @@ static void sound_files_are_taken(void **state) {
     exr_layout *layout = open_image(&m);
     assert_non_null(layout);
     assert_true(exr_layout_tile(layout, 0, 0, 0) && exr_layout_tile(layout, 0, 1, 0));
+    assert_int_equal(exr_layout_bytes(layout, 0), 2 * (8 + (many ? 20 : 16) + 24 + 30));   /* place, numbers, sizes, counts and samples */
+    assert_int_equal(exr_layout_bytes(layout, 1), 0);
     assert_false(exr_layout_tile(layout, 0, 2, 0) || exr_layout_tile(layout, 0, 0, 1) || exr_layout_tile(layout, 1, 0, 0));
     exr_layout_close(layout);
   }

@@ -10,10 +10,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "map/compact_tile.h"
 #include "map/depth_tile.h"
-#include "map/tile.h"
-#include "random.h"
+#include "made_tile.h"
 #include "store/map_file.h"
 #include "store/map_parts.h"
 
@@ -191,7 +189,7 @@ static inline const tile *random_tile(rng *r, int coloured, uint32_t most_vertic
 
 static inline made_map made_map_random(rng *r, uint32_t faces, uint32_t most_pixels, int coloured, uint32_t most_vertices) {
   made_map m = {.header = random_header(r, faces, most_pixels, coloured), .fail_at = UINT64_MAX};
-  map_parts_lay(&m.parts, &m.header.projection, map_header_channels(&m.header));
+  map_parts_lay(&m.parts, &m.header.projection, map_header_kind(&m.header));
   m.tiles = calloc(m.parts.tile_count + 1, sizeof *m.tiles);
   for (uint64_t i = 0; i < m.parts.tile_count; ++i)
     m.tiles[i] = random_tile(r, coloured, rng_below(r, 20) == 0 ? 20 * most_vertices : most_vertices);
@@ -209,13 +207,6 @@ static inline dsm_result give_made(void *data, const tile_key *key, const tile *
   uint64_t number = map_parts_number(&m->parts, key);
   *out = m->tiles[number];
   return number == m->fail_at ? m->fail_with : DSM_OK;
-}
-
-static inline int same_tiles(const tile *a, const tile *b) {
-  if (a->kind != TILE_STORED || b->kind != TILE_STORED) return a == b;
-  return a->near_depth == b->near_depth && a->tolerance == b->tolerance
-      && a->size == b->size && a->layout == b->layout && memcmp(&a->codes, &b->codes, sizeof a->codes) == 0
-      && memcmp(a + 1, b + 1, a->size - sizeof(tile)) == 0;
 }
 
 /* The first tile that is not the same in the file; its number, or how many there are. */
