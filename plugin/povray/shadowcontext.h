@@ -6,6 +6,8 @@
 
 #include <exception>
 
+#include <boost/scoped_ptr.hpp>
+
 #include "backend/shadow/shadowevents.h"
 
 namespace pov
@@ -49,7 +51,8 @@ class ShadowContext
 		POV_ULONG RayTraced(size_t map) const { return workers[map].rayTraced; }
 
 		ShadowMaps& Maps() { return maps; }
-		const ShadowHits& Hits() const { return events.Hits(); }
+		/// How light rays were traced; NULL: none was.
+		const ShadowHits *Hits() const { return events ? &events->Hits() : NULL; }
 
 		/// What the library calls while a context looks up; see dsm_host.
 		static dsm_result Trace(void *worker, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink);
@@ -67,13 +70,15 @@ class ShadowContext
 		};
 
 		ShadowMaps& maps;
+		ViewData *viewData;
 		TraceThreadData *thread;
-		ShadowEvents events;
+		boost::scoped_ptr<ShadowEvents> events; ///< with the first light ray: many scenes ask for none, and its random numbers take time
 		vector<Worker> workers;
 		std::exception_ptr failure; ///< no exception may cross the library, so it waits here
 		bool inFile;                ///< a file's call is under way
 		string complaint;           ///< of that call
 
+		ShadowEvents& Events();
 		void PassOnFailure();
 		void Check(dsm_result result);
 };

@@ -2,6 +2,7 @@
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
+#include "backend/interior/interior.h"
 #include "backend/math/vector.h"
 #include "backend/scene/objects.h"
 #include "backend/scene/scene.h"
@@ -110,6 +111,35 @@ void ShadowSurvey::Request(size_t map, const dsm_receiver& receiver, const Light
 	tracing = false;
 	if(counting)
 		tallies[map].AddRequest(ShadowWorkOf(stats) - middle, middle - before);
+}
+
+void ShadowSurveyMedia::ComputeMedia(vector<Media>& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket)
+{
+	if(!source.empty())
+		Made().ComputeMedia(source, ray, isect, colour, ticket);
+}
+
+void ShadowSurveyMedia::ComputeMedia(const RayInteriorVector& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket)
+{
+	for(RayInteriorVector::const_iterator i(source.begin()); i != source.end(); i++)
+		if(!(*i)->media.empty())
+		{
+			Made().ComputeMedia(source, ray, isect, colour, ticket);
+			return;
+		}
+}
+
+void ShadowSurveyMedia::ComputeMedia(MediaVector& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket)
+{
+	if(!source.empty())
+		Made().ComputeMedia(source, ray, isect, colour, ticket);
+}
+
+MediaFunction& ShadowSurveyMedia::Made()
+{
+	if(!made)
+		made.reset(new MediaFunction(thread, survey, gatherer));
+	return *made;
 }
 
 ShadowSurveyTask::ShadowSurveyTask(ViewData *vd, const ShadowSampling& s) :
