@@ -17,6 +17,20 @@ class ShadowMaps;
 class ViewData;
 class ViewThreadData;
 
+/// What a light ray goes through outside of all objects. Fog and atmospheric media are in no map; Trace::ComputeShadowMedia takes this.
+struct ShadowAir
+{
+	Ray ray;
+	Intersection end;
+
+	ShadowAir(const Ray& toLight, double depth) : ray(toLight)
+	{
+		ray.SetFlags(Ray::OtherRay, true, false);
+		end.Depth = depth;
+		end.Object = NULL;
+	}
+};
+
 /// Has its own tracing objects, so that baking does not disturb the render that it interrupts, and its own workers.
 class ShadowContext
 {

@@ -158,12 +158,8 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 		TraceUnmappedCasters(maps.Casters().Unmapped(), lightsource, depth, lightsourceray, colour, ticket);
 	if(map.atmosphere && (depth > kSameHit))
 	{
-		Ray ray(lightsourceray);
-		Intersection end;
-		ray.SetFlags(Ray::OtherRay, true, false);
-		end.Depth = depth;
-		end.Object = NULL;
-		ComputeShadowMedia(ray, end, colour, true, ticket);
+		ShadowAir air(lightsourceray, depth);
+		ComputeShadowMedia(air.ray, air.end, colour, true, ticket);
 	}
 	return true;
 }
