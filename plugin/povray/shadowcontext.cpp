@@ -19,10 +19,10 @@ namespace pov
 
 using namespace pov_base;
 
-ShadowContext::ShadowContext(ShadowMaps& m, ViewData *viewData, ViewThreadData *threadData) :
+ShadowContext::ShadowContext(ShadowMaps& m, ViewData *vd, ViewThreadData *threadData) :
 	maps(m),
+	viewData(vd),
 	thread(threadData),
-	events(viewData->GetSceneData(), threadData, viewData->GetQualityFeatureFlags(), m.Casters()),
 	workers(m.Count()),
 	inFile(false)
 {
@@ -79,7 +79,7 @@ double ShadowContext::BakeWork(size_t map) const
 
 	s.size = sizeof(s);
 	ShadowPlugin::Api().statistics(maps[map].map.get(), &s);
-	return ShadowWorkOf(thread->Stats()) + ShadowWorkOf(events) + ShadowWorkOf(s);
+	return ShadowWorkOf(thread->Stats()) + (events ? ShadowWorkOf(*events) : 0.0) + ShadowWorkOf(s);
 }
 
 void ShadowContext::Load(size_t map, const string& path)
@@ -115,6 +115,13 @@ bool ShadowContext::Complain(const char *sentence)
 	return inFile;
 }
 
+ShadowEvents& ShadowContext::Events()
+{
+	if(!events)
+		events.reset(new ShadowEvents(viewData->GetSceneData(), thread, viewData->GetQualityFeatureFlags(), maps.Casters()));
+	return *events;
+}
+
 void ShadowContext::PassOnFailure()
 {
 	if(failure)
@@ -144,7 +151,7 @@ dsm_result ShadowContext::Trace(void *data, const dsm_ray *rays, uint32_t count,
 
 	try
 	{
-		return self.events.TraceRays(*self.maps[worker.map].light, rays, count, tolerance, sink);
+		return self.Events().TraceRays(*self.maps[worker.map].light, rays, count, tolerance, sink);
 	}
 	catch(...)
 	{

@@ -6,6 +6,8 @@
 
 #include <exception>
 
+#include <boost/scoped_ptr.hpp>
+
 #include "backend/shadow/shadowevents.h"
 
 namespace pov
@@ -14,6 +16,20 @@ namespace pov
 class ShadowMaps;
 class ViewData;
 class ViewThreadData;
+
+/// What a light ray goes through outside of all objects. Fog and atmospheric media are in no map; Trace::ComputeShadowMedia takes this.
+struct ShadowAir
+{
+	Ray ray;
+	Intersection end;
+
+	ShadowAir(const Ray& toLight, double depth) : ray(toLight)
+	{
+		ray.SetFlags(Ray::OtherRay, true, false);
+		end.Depth = depth;
+		end.Object = NULL;
+	}
+};
 
 /// Has its own tracing objects, so that baking does not disturb the render that it interrupts, and its own workers.
 class ShadowContext
@@ -49,7 +65,8 @@ class ShadowContext
 		POV_ULONG RayTraced(size_t map) const { return workers[map].rayTraced; }
 
 		ShadowMaps& Maps() { return maps; }
-		const ShadowHits& Hits() const { return events.Hits(); }
+		/// How light rays were traced; NULL: none was.
+		const ShadowHits *Hits() const { return events ? &events->Hits() : NULL; }
 
 		/// What the library calls while a context looks up; see dsm_host.
 		static dsm_result Trace(void *worker, const dsm_ray *rays, uint32_t count, double tolerance, dsm_sink *sink);
@@ -67,13 +84,15 @@ class ShadowContext
 		};
 
 		ShadowMaps& maps;
+		ViewData *viewData;
 		TraceThreadData *thread;
-		ShadowEvents events;
+		boost::scoped_ptr<ShadowEvents> events; ///< with the first light ray: many scenes ask for none, and its random numbers take time
 		vector<Worker> workers;
 		std::exception_ptr failure; ///< no exception may cross the library, so it waits here
 		bool inFile;                ///< a file's call is under way
 		string complaint;           ///< of that call
 
+		ShadowEvents& Events();
 		void PassOnFailure();
 		void Check(dsm_result result);
 };

@@ -113,17 +113,15 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 {
 	ShadowMaps& maps = *sceneData->shadowMaps;
 
-	if(maps.Unshadowed())
-		return true;
-
-	ShadowSurvey *survey = shadowReceiver.survey;
-	if((survey != NULL) && survey->Tracing())
-		return false;
-
 	// a survey leaves out what it need not know
 	const size_t index = maps.Find(lightsource);
-	if((index == ShadowMaps::kNone) || ((survey != NULL) && !maps.IsUndecided(index)))
-		return survey != NULL;
+	ShadowSurvey *survey = shadowReceiver.survey;
+	if(index == ShadowMaps::kNone)
+		return maps.Unshadowed() || ((survey != NULL) && !survey->Tracing());
+	if((survey != NULL) && survey->Tracing())
+		return false;
+	if((survey != NULL) && !maps.IsUndecided(index))
+		return true;
 
 	const ShadowMap& map = maps[index];
 	if(!lightsourceray.IsHollowRay() ||
@@ -160,12 +158,8 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 		TraceUnmappedCasters(maps.Casters().Unmapped(), lightsource, depth, lightsourceray, colour, ticket);
 	if(map.atmosphere && (depth > kSameHit))
 	{
-		Ray ray(lightsourceray);
-		Intersection end;
-		ray.SetFlags(Ray::OtherRay, true, false);
-		end.Depth = depth;
-		end.Object = NULL;
-		ComputeShadowMedia(ray, end, colour, true, ticket);
+		ShadowAir air(lightsourceray, depth);
+		ComputeShadowMedia(air.ray, air.end, colour, true, ticket);
 	}
 	return true;
 }

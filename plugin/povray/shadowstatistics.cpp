@@ -100,9 +100,12 @@ string ShadowMaps::Comparison() const
 
 	for(vector<shared_ptr<ShadowContext> >::const_iterator i(contexts.begin()); i != contexts.end(); i++)
 	{
-		comparing = (*i)->Hits().Comparing();
-		compared += (*i)->Hits().compared;
-		different += (*i)->Hits().different;
+		const ShadowHits *hits = (*i)->Hits();
+		if(hits == NULL)
+			continue;
+		comparing = hits->Comparing();
+		compared += hits->compared;
+		different += hits->different;
 	}
 	if(comparing)
 		text << "Rays in both orders: " << compared << ", different: " << different << "\n";

@@ -2,6 +2,7 @@
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
+#include "backend/interior/interior.h"
 #include "backend/math/vector.h"
 #include "backend/scene/objects.h"
 #include "backend/scene/scene.h"
@@ -33,6 +34,9 @@ const double kFirstConfidence = 4.0;
 
 /// Tiles that are baked to learn what they cost.
 const unsigned int kMostBaked = 8;
+
+/// Fewer requests tell too little of a light to bake anything.
+const unsigned int kFewestRequests = 16;
 
 /// Of the rays' work, what baking tiles may cost: it is lost where rays are chosen.
 const double kBakeShare = 0.02;
@@ -92,7 +96,8 @@ void ShadowSurvey::Want(void *tally, const dsm_tiles *tiles)
 
 void ShadowSurvey::Request(size_t map, const dsm_receiver& receiver, const LightSource& light, double depth, const Ray& ray, const Vector3d& point, RGBColour& colour, TraceTicket& ticket)
 {
-	const ShadowCasters& casters = viewData->GetSceneData()->shadowMaps->Casters();
+	const ShadowMaps& maps = *viewData->GetSceneData()->shadowMaps;
+	const ShadowCasters& casters = maps.Casters();
 	const RenderStatistics& stats = thread->Stats();
 	RGBColour left(1.0);
 
@@ -101,6 +106,11 @@ void ShadowSurvey::Request(size_t map, const dsm_receiver& receiver, const Light
 	const double before = ShadowWorkOf(stats);
 	if(counting && !casters.Unmapped().empty())
 		TraceUnmappedCasters(casters.Unmapped(), light, depth, ray, left, ticket);
+	if(counting && maps[map].atmosphere)
+	{
+		ShadowAir air(ray, depth);
+		ComputeShadowMedia(air.ray, air.end, left, true, ticket);
+	}
 
 	const double middle = ShadowWorkOf(stats);
 	tracing = true;
@@ -110,6 +120,35 @@ void ShadowSurvey::Request(size_t map, const dsm_receiver& receiver, const Light
 	tracing = false;
 	if(counting)
 		tallies[map].AddRequest(ShadowWorkOf(stats) - middle, middle - before);
+}
+
+void ShadowSurveyMedia::ComputeMedia(vector<Media>& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket)
+{
+	if(!source.empty())
+		Made().ComputeMedia(source, ray, isect, colour, ticket);
+}
+
+void ShadowSurveyMedia::ComputeMedia(const RayInteriorVector& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket)
+{
+	for(RayInteriorVector::const_iterator i(source.begin()); i != source.end(); i++)
+		if(!(*i)->media.empty())
+		{
+			Made().ComputeMedia(source, ray, isect, colour, ticket);
+			return;
+		}
+}
+
+void ShadowSurveyMedia::ComputeMedia(MediaVector& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket)
+{
+	if(!source.empty())
+		Made().ComputeMedia(source, ray, isect, colour, ticket);
+}
+
+MediaFunction& ShadowSurveyMedia::Made()
+{
+	if(!made)
+		made.reset(new MediaFunction(thread, survey, gatherer));
+	return *made;
 }
 
 ShadowSurveyTask::ShadowSurveyTask(ViewData *vd, const ShadowSampling& s) :
@@ -193,7 +232,7 @@ void ShadowSurveyTask::Judge(size_t map, unsigned int taken, double confidence)
 
 	// a guess is low: first one tile has to be baked to believe that the map costs less, then a few, where that is cheap
 	const double rays = tally.RaysWork(scale), affordable = kBakeShare * rays;
-	if((tally.Baked() == 0) && (tally.MapWork(scale, tiles) <= rays) && (tally.TileWork() <= affordable))
+	if((tally.Baked() == 0) && (tally.Requests() >= kFewestRequests) && (tally.MapWork(scale, tiles) <= rays) && (tally.LikelyTileWork() <= affordable))
 		Bake(map, 1);
 	if((tally.Baked() > 0) && (tally.MapWork(scale, tiles) <= 2.0 * rays) && (tally.TileWork() * kMostBaked <= affordable))
 		Bake(map, kMostBaked);

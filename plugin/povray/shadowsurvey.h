@@ -4,6 +4,8 @@
 #ifndef POVRAY_BACKEND_SHADOWSURVEY_H
 #define POVRAY_BACKEND_SHADOWSURVEY_H
 
+#include <boost/scoped_ptr.hpp>
+
 #include "backend/interior/media.h"
 #include "backend/lighting/photons.h"
 #include "backend/render/rendertask.h"
@@ -56,6 +58,24 @@ class ShadowSurvey : public TracePixel
 		static void Want(void *tally, const dsm_tiles *tiles);
 };
 
+/// Media as the image has them. Their random numbers take more time than the rest of a survey, and most scenes have none.
+class ShadowSurveyMedia : public Trace::MediaFunctor
+{
+	public:
+		ShadowSurveyMedia(TraceThreadData *t, Trace *s, PhotonGatherer *g) : thread(t), survey(s), gatherer(g) { }
+
+		virtual void ComputeMedia(vector<Media>& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket);
+		virtual void ComputeMedia(const RayInteriorVector& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket);
+		virtual void ComputeMedia(MediaVector& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket);
+	private:
+		TraceThreadData *thread;
+		Trace *survey;
+		PhotonGatherer *gatherer;
+		boost::scoped_ptr<MediaFunction> made;
+
+		MediaFunction& Made();
+};
+
 class ShadowSurveyTask : public RenderTask
 {
 	public:
@@ -77,7 +97,7 @@ class ShadowSurveyTask : public RenderTask
 		const ShadowSampling sampling;
 		ShadowSurvey survey;
 		CooperateFunction cooperate;
-		MediaFunction media;
+		ShadowSurveyMedia media;
 		Trace::RadiosityFunctor radiosity; ///< none: its rays would be kept in the scene
 		PhotonGatherer photonGatherer;
 

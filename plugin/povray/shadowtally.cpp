@@ -22,6 +22,10 @@ const unsigned int kOften = 3;
 /// Light rays of a tile, and what each takes at least of a shadow ray's work.
 const double kTileRays = 4096.0, kLeastShare = 0.1;
 
+/// What a light ray takes as likely as not: a part of its own, and a share of a shadow ray's work. From tiles of the scenes in scenes/ and
+/// of a scene whose shadow rays take little; each is within a factor of 3, where volumes are deep it is less.
+const double kOwnWork = 700.0, kLikelyShare = 0.25;
+
 /// Tiles are picked from all over the map: this share of the wanted ones further on each time, the golden section's.
 const double kPickStep = 0.6180339887498949;
 
@@ -101,6 +105,11 @@ double ShadowTally::TileWork() const
 	if(baked > 0)
 		return bakeWork / baked;
 	return kShadowLeastTileWork + ((requests > 0) ? kTileRays * kLeastShare * rays / requests : 0.0);
+}
+
+double ShadowTally::LikelyTileWork() const
+{
+	return kShadowLeastTileWork + ((requests > 0) ? kTileRays * (kOwnWork + kLikelyShare * rays / requests) : 0.0);
 }
 
 double ShadowTally::MapWork(double scale, double frameTiles) const

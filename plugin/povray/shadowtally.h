@@ -45,6 +45,8 @@ class ShadowTally
 		double MapWork(double scale, double frameTiles) const;
 		/// Of one tile: what those that were baked have cost, or else a guess that is low.
 		double TileWork() const;
+		/// Of the first tile that will be baked.
+		double LikelyTileWork() const;
 	private:
 		/// Finest tile, or tile of a coarser level.
 		struct Key
