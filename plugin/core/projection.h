@@ -46,6 +46,15 @@ static inline uint32_t face_levels(const face *f)
   return levels;
 }
 
+/* The level, or the coarsest that the face has. Cheaper than to count all of them. */
+static inline uint32_t face_level_within(const face *f, uint32_t level)
+{
+  uint32_t longer = f->width > f->height ? f->width : f->height;
+  while (level > 0 && longer <= 1u << (level - 1))
+    level--;
+  return level;
+}
+
 typedef struct {
   double origin[3];
   frame axes;            /* of a cube; the faces look along ±forward, ±right, ±up */

@@ -56,7 +56,7 @@ static footprint choose(const view *v, int has_footprint)
 {
   const dsm_map *map = v->worker->map;
   spread region = spread_of_square(map->blur);
-  uint32_t levels = face_levels(&map->projection.faces[v->at->face]), most = map->blur_level;
+  uint32_t most = map->blur_level;
   int alone = map->projection.count == 1;   /* what lies beyond a cube's face is not lit: see face_fit.c */
   if (has_footprint) {
     spread_add(&region, &map->projection, v->at, v->receiver->footprint);
@@ -65,8 +65,7 @@ static footprint choose(const view *v, int has_footprint)
     if (most < map->first_level)
       most = map->first_level;
   }
-  if (most >= levels)
-    most = levels - 1;
+  most = face_level_within(&map->projection.faces[v->at->face], most);
   if (map->first_level == 0)
     return footprint_of(&region, most, alone && has_footprint ? FOOTPRINT_PROBES : 1);
   footprint f = footprint_of(&region, most, has_footprint ? REFINED_PROBES : 1);

@@ -34,11 +34,42 @@ const double kEdge = 1.0e-6;
 const double kLeastCut = 0.01;
 
 /// What floats are off by, and some more.
-const double kFloatRounding = 1.0e-6;
+const float kFloatRounding = 1.0e-6f;
 
-/// What one instruction works on.
-typedef float Lanes __attribute__((vector_size(16)));
-typedef int IntLanes __attribute__((vector_size(16)));
+/// What a place in cells is off by in floats, and some more; and one where no cell is.
+const float kFloatEdge = 1.0e-4f, kFar = 1.0e9f;
+
+/// What can be divided by.
+const float kLeastFloat = 1.0e-30f;
+
+/// What one instruction works on: of any processor, and of those with AVX2. Both find the same.
+struct NarrowLanes
+{
+	enum { kCount = 4 };
+	typedef float Floats __attribute__((vector_size(16)));
+	typedef int Ints __attribute__((vector_size(16)));
+};
+struct WideLanes
+{
+	enum { kCount = 8 };
+	typedef float Floats __attribute__((vector_size(32)));
+	typedef int Ints __attribute__((vector_size(32)));
+};
+const float kNumbers[WideLanes::kCount] = { 0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f };
+
+#ifdef __x86_64__
+#define FOR_WIDE_LANES __attribute__((target("avx2")))
+const bool kHasWideLanes = (__builtin_cpu_init(), __builtin_cpu_supports("avx2"));
+#else
+#define FOR_WIDE_LANES
+const bool kHasWideLanes = false;
+#endif
+
+/// For functions that are to be made of the instructions of those that call them.
+#define PART_OF_CALLER inline __attribute__((always_inline))
+
+/// Most outlines have no more sides.
+const int kUsualSides = 4;
 
 /// Hidden or not is asked of at most so many blocks.
 const int kMostBlocksAsked = 16;
@@ -184,10 +215,10 @@ void ShadowBeam::Sort()
 	std::copy_backward(first.begin(), first.end() - 1, first.end());
 	first[0] = 0;
 
-	// three more, so that four can be read anywhere
-	across.assign(slots.size() + 3, 0.0f);
-	upward.assign(slots.size() + 3, 0.0f);
-	ends.assign(slots.size() + 3, HUGE_VALF);
+	// some more, so that all lanes can be read anywhere
+	across.assign(slots.size() + WideLanes::kCount - 1, 0.0f);
+	upward.assign(slots.size() + WideLanes::kCount - 1, 0.0f);
+	ends.assign(slots.size() + WideLanes::kCount - 1, HUGE_VALF);
 	for(size_t i = 0; i < slots.size(); i++)
 	{
 		across[i] = float((slots[i].u - low[0]) * perCell[0]);
@@ -308,88 +339,135 @@ bool ShadowBeam::Hides(const ShadowRect& rect) const
 	return true;
 }
 
-/// Where the outline's sides cut the rows of cells, in cells from the left: linear in the row.
-struct ShadowBeam::Clip
+/// An outline over the beam's cells, in floats: side by side, so that one instruction works on many rows or rays. All of it
+/// lets through a little more than the outline does, so that rounding costs nothing.
+template<int kSides> struct ShadowBeam::Mould
 {
-	struct Cut
-	{
-		double at, step; ///< in row 0, and from row to row
-	};
-	Cut lefts[ShadowOutline::kMostSides + 1], rights[ShadowOutline::kMostSides + 1];
-	int leftCount, rightCount;
+	float a[kSides], b[kSides], c[kSides]; ///< a x + b y <= c
+	float left[kSides], leftStep[kSides];  ///< no cell of row y is inside that ends before left + leftStep y,
+	float right[kSides], rightStep[kSides]; ///< nor one that begins behind right + rightStep y
+	float least, most;                     ///< likewise, of all rows
+	float nearness;
 
-	Clip(const ShadowBeam& beam, const ShadowOutline& outline) : leftCount(1), rightCount(1)
+	PART_OF_CALLER Mould(const ShadowBeam& beam, const ShadowOutline& outline)
 	{
-		const Cut left = { (outline.rect.low[0] - beam.low[0]) * beam.perCell[0], 0.0 };
-		const Cut right = { (outline.rect.high[0] - beam.low[0]) * beam.perCell[0], 0.0 };
-		lefts[0] = left;
-		rights[0] = right;
-		for(int i = 0; i < outline.sideCount; i++)
+		const ShadowRect& rect = outline.rect;
+
+		nearness = ShadowFloatAbove(rect.nearness);
+		least = float((rect.low[0] - beam.low[0]) * beam.perCell[0]);
+		least -= kFloatEdge + kFloatRounding * fabsf(least);
+		most = float((rect.high[0] - beam.low[0]) * beam.perCell[0]);
+		most += kFloatEdge + kFloatRounding * fabsf(most);
+		for(int i = 0; i < kSides; i++)
 		{
 			const ShadowOutline::Side& side = outline.sides[i];
-			if(fabs(side.a) < kLeastCut)
-				continue;
-			// of a row's two edges, the one at which the side leaves more cells
-			const double across = 1.0 / side.a, slope = -side.b * across;
-			const bool top = (slope > 0.0) == (side.a > 0.0);
-			const double edge = beam.low[1] + (top ? 1.0 + kEdge : -kEdge) * beam.cellSize[1];
-			const Cut cut = { (side.c * across + slope * edge - beam.low[0]) * beam.perCell[0], slope * beam.cellSize[1] * beam.perCell[0] };
-			if(side.a > 0.0)
-				rights[rightCount++] = cut;
-			else
-				lefts[leftCount++] = cut;
+			const bool unused = (i >= outline.sideCount);
+			const double x = unused ? 0.0 : side.a * beam.cellSize[0], y = unused ? 0.0 : side.b * beam.cellSize[1];
+			const double end = unused ? 1.0 : side.c - side.a * beam.low[0] - side.b * beam.low[1];
+			a[i] = float(x);
+			b[i] = float(y);
+			c[i] = float(end + kFloatRounding * (kMostCells * (fabs(x) + fabs(y)) + fabs(end)));
+
+			// of a row's two edges, the one at which the side leaves more cells; a side that runs along the rows cuts none
+			const bool along = !(fabsf(a[i]) > kLeastFloat) || (fabs(side.a) < kLeastCut), onLeft = (a[i] < 0.0f);
+			const float per = 1.0f / (along ? 1.0f : a[i]), step = -b[i] * per;
+			const float edge = ((step > 0.0f) == !onLeft) ? 1.0f + kFloatEdge : -kFloatEdge;
+			const float at = c[i] * per + step * edge, room = kFloatEdge + kFloatRounding * (fabsf(at) + kMostCells * fabsf(step));
+			left[i] = (along || !onLeft) ? -kFar : at - room;
+			leftStep[i] = (along || !onLeft) ? 0.0f : step;
+			right[i] = (along || onLeft) ? kFar : at + room;
+			rightStep[i] = (along || onLeft) ? 0.0f : step;
 		}
 	}
 
-	/// The row's cells that the sides leave, from first to last.
-	void Row(int row, int cells, int& from, int& to) const
+	/// The cells of some rows, from `row` on, that may be inside: from first to last, none if the last comes before the first.
+	template<class Lanes> PART_OF_CALLER void Rows(int row, int cells, int from[Lanes::kCount], int to[Lanes::kCount]) const
 	{
-		double left = lefts[0].at, right = rights[0].at;
+		typedef typename Lanes::Floats Floats;
+		typedef typename Lanes::Ints Ints;
+		const Floats zero = { 0.0f }, end = zero + float(cells - 1);
+		const Ints nowhere = Ints { 0 } - 1;
+		Floats y, low = zero + least, high = zero + most;
 
-		for(int i = 1; i < leftCount; i++)
-			left = max(left, lefts[i].at + row * lefts[i].step);
-		for(int i = 1; i < rightCount; i++)
-			right = min(right, rights[i].at + row * rights[i].step);
-		from = Within(left - kEdge, cells);
-		to = (left <= right) ? Within(right + kEdge, cells) : from - 1;
-	}
-	static int Within(double cell, int cells) { return (cell > 0.0) ? ((cell < cells) ? int(cell) : cells - 1) : 0; }
-};
-
-/// The outline's sides in float cells, for four rays at a time. They let through a little more, so that rounding costs none.
-struct ShadowBeam::Sides
-{
-	Lanes a[ShadowOutline::kMostSides], b[ShadowOutline::kMostSides], c[ShadowOutline::kMostSides], nearness;
-	const int count;
-
-	Sides(const ShadowBeam& beam, const ShadowOutline& outline) : count(outline.sideCount)
-	{
-		const Lanes zero = { 0.0f, 0.0f, 0.0f, 0.0f };
-		for(int i = 0; i < count; i++)
+		memcpy(&y, kNumbers, sizeof(y));
+		y += float(row);
+		for(int i = 0; i < kSides; i++)
 		{
-			const ShadowOutline::Side& side = outline.sides[i];
-			const double x = side.a * beam.cellSize[0], y = side.b * beam.cellSize[1];
-			const double most = side.c - side.a * beam.low[0] - side.b * beam.low[1];
-			a[i] = zero + float(x);
-			b[i] = zero + float(y);
-			c[i] = zero + float(most + kFloatRounding * (kMostCells * (fabs(x) + fabs(y)) + fabs(most)));
+			const Floats l = y * leftStep[i] + left[i], r = y * rightStep[i] + right[i];
+			low = (l > low) ? l : low;
+			high = (r < high) ? r : high;
 		}
-		nearness = zero + ShadowFloatAbove(outline.rect.nearness);
+		// nothing lies left of the first cell or right of the last, but what is on its edge does so by rounding
+		const Ints none = (low > high) | (high < zero - 2.0f * kFloatEdge) | (low > end + (1.0f + 2.0f * kFloatEdge));
+		const Floats first = (low > zero) ? low : zero, last = (high > zero) ? high : zero;
+		const Ints firstCell = __builtin_convertvector((first < end) ? first : end, Ints);
+		const Ints lastCell = none ? nowhere : __builtin_convertvector((last < end) ? last : end, Ints);
+		memcpy(from, &firstCell, sizeof(firstCell));
+		memcpy(to, &lastCell, sizeof(lastCell));
 	}
 
-	/// Of four slots, all bits of those that are inside and do not end before the outline.
-	IntLanes Hold(const ShadowBeam& beam, unsigned int slot) const
+	/// Of some slots, all bits of those that are inside and do not end before the outline.
+	/// @return     false if there are none
+	template<class Lanes> PART_OF_CALLER bool Hold(const ShadowBeam& beam, unsigned int slot, int held[Lanes::kCount]) const
 	{
-		Lanes x, y, end;
+		typename Lanes::Floats x, y, end;
 		memcpy(&x, &beam.across[slot], sizeof(x));
 		memcpy(&y, &beam.upward[slot], sizeof(y));
 		memcpy(&end, &beam.ends[slot], sizeof(end));
-		IntLanes held = (nearness >= end);
-		for(int i = 0; i < count; i++)
-			held &= (a[i] * x + b[i] * y <= c[i]);
-		return held;
+		typename Lanes::Ints inside = (nearness >= end);
+		for(int i = 0; i < kSides; i++)
+			inside &= (x * a[i] + y * b[i] <= c[i]);
+
+		long long any[sizeof(inside) / sizeof(long long)], all = 0;
+		memcpy(any, &inside, sizeof(any));
+		for(size_t i = 0; i < sizeof(any) / sizeof(*any); i++)
+			all |= any[i];
+		if(all == 0)
+			return false;
+		memcpy(held, &inside, sizeof(inside));
+		return true;
 	}
 };
+
+template<class Lanes, int kSides> PART_OF_CALLER void ShadowBeam::SelectInside(const ShadowOutline& outline, std::vector<unsigned int>& selected) const
+{
+	const ShadowRect& rect = outline.rect;
+	const Mould<kSides> mould(*this, outline);
+	const int begin = CellOf(1, rect.low[1] - kEdge * cellSize[1]), end = CellOf(1, rect.high[1] + kEdge * cellSize[1]) + 1;
+
+	for(int row = begin; row < end; row += Lanes::kCount)
+	{
+		int from[Lanes::kCount], to[Lanes::kCount], held[Lanes::kCount];
+		mould.template Rows<Lanes>(row, cells[0], from, to);
+		for(int y = 0; y < min(int(Lanes::kCount), end - row); y++)
+		{
+			// cells of a row lie one behind the other
+			const unsigned int *const starts = &first[(row + y) * cells[0]];
+			const unsigned int last = starts[max(from[y], to[y] + 1)];
+			for(unsigned int i = starts[from[y]]; i < last; i += Lanes::kCount)
+			{
+				if(!mould.template Hold<Lanes>(*this, i, held))
+					continue;
+				for(unsigned int k = 0; (k < Lanes::kCount) && (i + k < last); k++)
+					if(held[k] && (!outline.round || outline.Holds(slots[i + k].u, slots[i + k].v)))
+						selected.push_back(i + k);
+			}
+		}
+	}
+}
+
+template<class Lanes> PART_OF_CALLER void ShadowBeam::SelectBy(const ShadowOutline& outline, std::vector<unsigned int>& selected) const
+{
+	if(outline.sideCount <= kUsualSides)
+		SelectInside<Lanes, kUsualSides>(outline, selected);
+	else
+		SelectInside<Lanes, ShadowOutline::kMostSides>(outline, selected);
+}
+
+FOR_WIDE_LANES void ShadowBeam::SelectWide(const ShadowOutline& outline, std::vector<unsigned int>& selected) const
+{
+	SelectBy<WideLanes>(outline, selected);
+}
 
 void ShadowBeam::Select(const ShadowOutline& outline, std::vector<unsigned int>& selected) const
 {
@@ -397,26 +475,10 @@ void ShadowBeam::Select(const ShadowOutline& outline, std::vector<unsigned int>&
 
 	if((rect.low[0] > high[0]) || (rect.high[0] < low[0]) || (rect.low[1] > high[1]) || (rect.high[1] < low[1]) || (rect.nearness < end))
 		return;
-	const Clip clip(*this, outline);
-	const Sides sides(*this, outline);
-	const int y1 = CellOf(1, rect.high[1] + kEdge * cellSize[1]);
-	for(int y = CellOf(1, rect.low[1] - kEdge * cellSize[1]); y <= y1; y++)
-	{
-		int from, to;
-		clip.Row(y, cells[0], from, to);
-		const unsigned int last = (from <= to) ? first[y * cells[0] + to + 1] : 0; // cells of a row lie one behind the other
-		for(unsigned int i = (from <= to) ? first[y * cells[0] + from] : 0; i < last; i += 4)
-		{
-			const IntLanes held(sides.Hold(*this, i));
-			long long any[2];
-			memcpy(any, &held, sizeof(any));
-			if((any[0] | any[1]) == 0)
-				continue;
-			for(unsigned int k = 0; (k < 4) && (i + k < last); k++)
-				if(held[k] && (!outline.round || outline.Holds(slots[i + k].u, slots[i + k].v)))
-					selected.push_back(i + k);
-		}
-	}
+	if(kHasWideLanes)
+		SelectWide(outline, selected);
+	else
+		SelectBy<NarrowLanes>(outline, selected);
 }
 
 void ShadowBeam::Drop(const double plane[3], size_t from, std::vector<unsigned int>& selected) const

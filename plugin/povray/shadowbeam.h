@@ -51,8 +51,7 @@ class ShadowBeam
 		enum { kBlock = 4 }; ///< cells along a block's side
 		enum { kMostCells = 64 }; ///< along a side
 
-		struct Clip;
-		struct Sides;
+		template<int kSides> struct Mould;
 		struct Slot
 		{
 			double u, v, end;
@@ -76,6 +75,9 @@ class ShadowBeam
 		int CellOf(int axis, double x) const;
 		void FindBlockEnd(int block);
 		void FindEnd();
+		template<class Lanes, int kSides> void SelectInside(const ShadowOutline& outline, std::vector<unsigned int>& selected) const;
+		template<class Lanes> void SelectBy(const ShadowOutline& outline, std::vector<unsigned int>& selected) const;
+		void SelectWide(const ShadowOutline& outline, std::vector<unsigned int>& selected) const;
 };
 
 }

@@ -20,19 +20,41 @@ namespace
 /// plane says little, and another pixel's sample is there.
 const double kMostStretch = 16.0;
 
-/// From the point to where a neighbour of its camera ray meets the tangent plane. In the plane, and finite, at any angle.
-void FootprintSide(double distance, const Ray& neighbour, const Vector3d& point, const Vector3d& normal, double side[3])
-{
-	const Vector3d direction(neighbour.Direction);
-	const Vector3d across(Vector3d(neighbour.Origin) + direction * distance - point);
-	const double towards = dot(direction, normal);
-	const double slope = max(fabs(towards), 1.0 / kMostStretch) * ((towards < 0.0) ? -1.0 : 1.0);
-	const Vector3d slid(across - direction * (dot(across, normal) / slope));
-	const Vector3d flat(slid - normal * dot(slid, normal)); // nothing to flatten, but where the slope was bounded
+/// What one instruction works on: a number of each neighbour.
+typedef double Pair __attribute__((vector_size(16)));
+typedef long long PairMask __attribute__((vector_size(16)));
 
-	const bool finite = (flat.lengthSqr() < MAX_DISTANCE * MAX_DISTANCE); // NaN is not
-	for(int i = 0; i < 3; i++)
-		side[i] = finite ? flat[i] : 0.0;
+inline Pair Dot(const Pair a[3], const Vector3d& b)
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// From the point to where the neighbours of its camera ray meet the tangent plane. In the plane, and finite, at any angle.
+void FootprintSides(double distance, const Pair origins[3], const Pair directions[3], const Vector3d& point, const Vector3d& normal, double sides[2][3])
+{
+	const Pair zero = { 0.0, 0.0 }, steepest = zero + 1.0 / kMostStretch;
+	Pair across[3], slid[3], flat[3];
+
+	for(int k = 0; k < 3; k++)
+		across[k] = origins[k] + directions[k] * distance - point[k];
+	const Pair towards = Dot(directions, normal);
+	const Pair up = (towards > steepest) ? towards : steepest, down = (towards < -steepest) ? towards : -steepest;
+	const Pair slope = (towards < zero) ? down : up;
+	const Pair along = Dot(across, normal) / slope;
+	for(int k = 0; k < 3; k++)
+		slid[k] = across[k] - directions[k] * along;
+	const Pair off = Dot(slid, normal); // nothing to flatten, but where the slope was bounded
+	for(int k = 0; k < 3; k++)
+		flat[k] = slid[k] - normal[k] * off;
+
+	const Pair square = flat[0] * flat[0] + flat[1] * flat[1] + flat[2] * flat[2];
+	const PairMask finite = (square < zero + MAX_DISTANCE * MAX_DISTANCE); // NaN is not
+	for(int k = 0; k < 3; k++)
+	{
+		const Pair side = finite ? flat[k] : zero;
+		sides[0][k] = side[0];
+		sides[1][k] = side[1];
+	}
 }
 
 }
@@ -52,6 +74,18 @@ bool TracePixel::CameraRayBeside(bool below, Ray& ray)
 	// a mesh's neighbours may be anywhere, and a normal may scatter rays at random
 	if((camera.Type == MESH_CAMERA) || (camera.Tnormal != NULL))
 		return false;
+
+	// the usual camera's rays are worth a shorter way to the same numbers
+	if((camera.Type == PERSPECTIVE_CAMERA) && !useFocalBlur)
+	{
+		const DBL x = sample.x + (below ? 0.0 : sampleSpacing) + 0.5;
+		const DBL y = sample.y + (below ? sampleSpacing : 0.0) - 0.5;
+
+		Assign_Vector(ray.Origin, *cameraLocation);
+		VLinComb3(ray.Direction, 1.0, *cameraDirection, x / sample.width - 0.5, *cameraRight, ((sample.height - 1) - y) / sample.height - 0.5, *cameraUp);
+		VNormalize(ray.Direction, ray.Direction);
+		return true;
+	}
 
 	neighbourRay = true;
 	bool created = false;
@@ -75,14 +109,19 @@ void Trace::FindShadowFootprint(const Vector3d& point)
 	shadowReceiver.footprintKnown = true;
 
 	const double distance = (point - Vector3d(shadowReceiver.cameraRay->Origin)).length();
+	Pair origins[3], directions[3];
 	Ray neighbour;
 	for(int i = 0; i < 2; i++)
 	{
+		// one that is not there is infinitely far away, and leaves the footprint no side
+		const bool beside = CameraRayBeside(i == 1, neighbour);
 		for(int k = 0; k < 3; k++)
-			shadowReceiver.footprint[i][k] = 0.0;
-		if(CameraRayBeside(i == 1, neighbour))
-			FootprintSide(distance, neighbour, point, shadowReceiver.surface.normal, shadowReceiver.footprint[i]);
+		{
+			origins[k][i] = beside ? neighbour.Origin[k] : HUGE_VAL;
+			directions[k][i] = neighbour.Direction[k];
+		}
 	}
+	FootprintSides(distance, origins, directions, point, shadowReceiver.surface.normal, shadowReceiver.asked.footprint);
 }
 
 }

@@ -140,6 +140,7 @@ void ShadowCasters::Prepare() const
 	for(unsigned int place = 0; place < places.size(); place++)
 		places[made->Box(place)] = place;
 	shapes.resize(objects.size());
+	placed.reset(new ObjectPtr[objects.size()]);
 	rods.reset(new ShadowRod[objects.size()]);
 	ShareWork(threads, (objects.size() + kStretch - 1) / kStretch, boost::bind(&ShadowCasters::Sketch, this, boost::cref(places), _1));
 	tree.swap(made);
@@ -154,6 +155,7 @@ void ShadowCasters::Sketch(const vector<unsigned int>& places, size_t stretch) c
 	{
 		const ShadowShape shape = ShadowShapeOf(objects[i], rod);
 		shapes[places[i]] = shape;
+		placed[places[i]] = objects[i];
 		if(shape == kRodShape)
 			rods[places[i]] = rod;
 	}
@@ -161,7 +163,7 @@ void ShadowCasters::Sketch(const vector<unsigned int>& places, size_t stretch) c
 
 void ShadowCasters::FetchObject(unsigned int place) const
 {
-	const ObjectBase *object = objects[tree->Box(place)];
+	const ObjectBase *object = placed[place];
 	const char *transform = reinterpret_cast<const char *>((object->Trans != NULL) ? &object->Trans->inverse : NULL);
 
 	if(transform != NULL)

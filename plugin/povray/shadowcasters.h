@@ -47,12 +47,14 @@ class ShadowCasters
 		/// The boxes as a tree, and the object that a box of the tree belongs to.
 		const ShadowTree& Tree() const { return *tree; }
 		ObjectPtr Object(unsigned int box) const { return objects[box]; }
+		/// The object of the box at a place of the tree.
+		ObjectPtr ObjectAt(unsigned int place) const { return placed[place]; }
 
 		/// How the object at a place of the tree is outlined.
 		/// @return     false if it lies around the light, and can be anywhere
 		bool Draw(unsigned int place, const ShadowFrame& frame, ShadowOutline& outline) const
 		{
-			return (shapes[place] == kRodShape) ? outline.Draw(frame, rods[place]) : outline.Draw(frame, ShadowShape(shapes[place]), objects[tree->Box(place)]);
+			return (shapes[place] == kRodShape) ? outline.Draw(frame, rods[place]) : outline.Draw(frame, ShadowShape(shapes[place]), placed[place]);
 		}
 
 		/// Sets the outline's plane, if drawing has left that.
@@ -66,6 +68,7 @@ class ShadowCasters
 		void FetchDrawing(unsigned int place) const
 		{
 			__builtin_prefetch(&rods[place]);
+			__builtin_prefetch(&placed[place]);
 		}
 		void FetchObject(unsigned int place) const;
 	private:
@@ -74,9 +77,10 @@ class ShadowCasters
 		vector<dsm_box> boxes;
 		vector<ObjectPtr> unmapped;
 
-		mutable boost::mutex mutex;   ///< guards the making of the next three
+		mutable boost::mutex mutex;   ///< guards the making of the next four
 		mutable boost::scoped_ptr<ShadowTree> tree;
 		mutable vector<unsigned char> shapes;  ///< ShadowShape, by place in the tree
+		mutable boost::scoped_array<ObjectPtr> placed; ///< likewise
 		mutable boost::scoped_array<ShadowRod> rods; ///< parallel to shapes; only rods are set, the rest costs no memory
 
 		bool hasVolumes, hasUnmappedVolumes;

@@ -133,7 +133,7 @@ void ShadowHits::FindTogether()
 		if(selected.size() == one.first)
 			continue;
 		wanted.push_back(one);
-		__builtin_prefetch(casters.Object(casters.Tree().Box(*place)));
+		__builtin_prefetch(casters.ObjectAt(*place));
 	}
 	const Wanted none = { 0, selected.size() };
 	wanted.push_back(none);
@@ -164,7 +164,7 @@ void ShadowHits::SelectRays(unsigned int place)
 /// All hits of the object at a place of the tree, with some of the selected rays.
 void ShadowHits::AskSelected(unsigned int place, size_t first, size_t end)
 {
-	const unsigned int caster = casters.Tree().Box(place);
+	const Caster caster = { casters.ObjectAt(place), casters.Tree().Box(place) };
 
 	for(size_t slot = first; slot < end; slot++)
 	{
@@ -193,16 +193,19 @@ void ShadowHits::FindByRay(const dsm_ray& ray, vector<Hit>& out)
 	found[kRays].veils.clear();
 	found[kRays].surfaces.clear();
 	while(walk.Next(track.end + kAhead, caster, enter, leave))
-		Ask(caster, ray, enter, leave, track, found[kRays]);
+	{
+		const Caster one = { casters.Object(caster), caster };
+		Ask(one, ray, enter, leave, track, found[kRays]);
+	}
 	Collect(track, found[kRays], out);
 }
 
 /// One object's surfaces. Many shapes report only their first hit outside CSG, so an object that is not opaque is asked
 /// again from just behind its last hit until nothing is left. Where it is asked from does not depend on what other
 /// objects have been found, nor do the hits in front of the ray's end.
-void ShadowHits::Ask(unsigned int caster, const dsm_ray& ray, double enter, double leave, Track& track, Found& out)
+void ShadowHits::Ask(const Caster& caster, const dsm_ray& ray, double enter, double leave, Track& track, Found& out)
 {
-	const ObjectPtr object = casters.Object(caster);
+	const ObjectPtr object = caster.object;
 	// what lies at the light itself is not in its way; how near that is, is stock's, but for scenes smaller than a unit
 	const double first = SMALL_TOLERANCE * min(1.0, ray.far_depth);
 	const bool atLight = (enter <= kRunUp);
@@ -251,7 +254,7 @@ void ShadowHits::Ask(unsigned int caster, const dsm_ray& ray, double enter, doub
 			if(!(depth <= track.end))
 				continue;
 
-			const Hit hit = { depth, caster, number, opaque ? int(kOpaque) : int(out.surfaces.size()) };
+			const Hit hit = { depth, caster.number, number, opaque ? int(kOpaque) : int(out.surfaces.size()) };
 			if(!opaque)
 			{
 				const Veil veil = { hit, track.veil };
@@ -265,7 +268,7 @@ void ShadowHits::Ask(unsigned int caster, const dsm_ray& ray, double enter, doub
 			{
 				track.opaque = true;
 				track.end = depth;
-				track.caster = caster;
+				track.caster = caster.number;
 				track.number = number;
 			}
 		}

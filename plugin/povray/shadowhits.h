@@ -71,6 +71,12 @@ class ShadowHits
 			vector<Intersection> surfaces;
 		};
 
+		struct Caster
+		{
+			ObjectPtr object;
+			unsigned int number; ///< of its box
+		};
+
 		/// An object that has rays from this one of `selected` on.
 		struct Wanted
 		{
@@ -105,7 +111,7 @@ class ShadowHits
 		void SelectRays(unsigned int place);
 		void AskSelected(unsigned int place, size_t first, size_t end);
 		void FindByRay(const dsm_ray& ray, vector<Hit>& out);
-		void Ask(unsigned int caster, const dsm_ray& ray, double enter, double leave, Track& track, Found& out);
+		void Ask(const Caster& caster, const dsm_ray& ray, double enter, double leave, Track& track, Found& out);
 		void Collect(const Track& track, const Found& in, vector<Hit>& out) const;
 		bool Agree() const;
 		static void Start(Track& track, const dsm_ray& ray);

@@ -12,6 +12,7 @@
 #include "backend/scene/scene.h"
 #include "backend/scene/threaddata.h"
 #include "backend/shape/cones.h"
+#include "backend/shape/planes.h"
 #include "backend/shadow/shadowcontext.h"
 #include "backend/shadow/shadowmaps.h"
 #include "backend/shadow/shadowsurvey.h"
@@ -43,18 +44,35 @@ class WithoutVolumes
 		const unsigned int saved;
 };
 
+/// What is the same for all lights.
+void FindKind(ShadowSurface& surface, const ShadowMaps& maps)
+{
+	// Only the object of the scene's top level decides what a map holds. A part of a union does not tell whose it is.
+	const ObjectBase *top = (surface.csg != NULL) ? surface.csg : surface.object;
+
+	if((Test_Flag(top, NO_SHADOW_FLAG) && !(top->Type & IS_CHILD_OBJECT)) || maps.Casters().IsUnmapped(top))
+		surface.kind = ShadowSurface::kUnmapped;
+	else if(typeid(*surface.object) == typeid(Cone))
+	{
+		const VECTOR kAxis = { 0.0, 0.0, 1.0 }, kRadius = { 1.0, 0.0, 0.0 };
+		const TRANSFORM *trans = surface.object->Trans;
+		Vector3d radius;
+
+		MTransDirection(*surface.axis, kAxis, trans);
+		MTransDirection(*radius, kRadius, trans); // the larger end's
+		surface.axis.normalize();
+		surface.radius = radius.length();
+		surface.kind = ShadowSurface::kRod;
+	}
+	else
+		surface.kind = ShadowSurface::kBoxed;
+}
+
 /// The plane of a thin rod's surface that needs the least bias: it holds the rod's axis, whatever the normal at the
 /// point is; the rod rises over it by the part of its radius that is nearer to the light.
-bool RodPlane(const Cone& rod, const Vector3d& toLight, const Vector3d& normal, dsm_plane& plane)
+bool RodPlane(const ShadowSurface& rod, const Vector3d& toLight, const Vector3d& normal, dsm_plane& plane)
 {
-	const VECTOR kAxis = { 0.0, 0.0, 1.0 }, kRadius = { 1.0, 0.0, 0.0 };
-	Vector3d axis, radius;
-
-	MTransDirection(*axis, kAxis, rod.Trans);
-	MTransDirection(*radius, kRadius, rod.Trans); // the larger end's
-	axis.normalize();
-
-	Vector3d across(toLight - axis * dot(toLight, axis));
+	Vector3d across(toLight - rod.axis * dot(toLight, rod.axis));
 	const double slope = across.length();
 	if(!(slope > 1.0e-3))
 		return false;
@@ -62,7 +80,7 @@ bool RodPlane(const Cone& rod, const Vector3d& toLight, const Vector3d& normal, 
 
 	for(int i = 0; i < 3; i++)
 		plane.normal[i] = across[i];
-	plane.rise = radius.length() * max(0.0, 1.0 - dot(normal, across)) / slope;
+	plane.rise = rod.radius * max(0.0, 1.0 - dot(normal, across)) / slope;
 	return true;
 }
 
@@ -81,10 +99,33 @@ void BoxPlane(const BBOX& box, const Vector3d& point, const Vector3d& toLight, d
 	plane.rise = max(rise, 0.0);
 }
 
+/// Whether an unmapped caster may be met between the ends of a ray. Most are grounds, and most light comes to them from one side.
+bool MayMeet(const ObjectBase& caster, const Ray& ray, double depth)
+{
+	if((typeid(caster) != typeid(Plane)) || (caster.Trans != NULL))
+		return true;
+
+	const Plane& plane = static_cast<const Plane&>(caster);
+	DBL height, climb;
+	VDot(height, plane.Normal_Vector, ray.Origin);
+	VDot(climb, plane.Normal_Vector, ray.Direction);
+	height += plane.Distance;
+	// half of what is the same hit: rounding must not decide
+	return !((height + 0.5 * kSameHit * climb) * (height + depth * climb) > 0.0);
+}
+
+bool MayMeetAny(const vector<ObjectPtr>& casters, const Ray& ray, double depth)
+{
+	for(vector<ObjectPtr>::const_iterator caster(casters.begin()); caster != casters.end(); caster++)
+		if(MayMeet(**caster, ray, depth))
+			return true;
+	return false;
+}
+
 }
 
 /// Where the receiver's own surface can be. Surfaces that are in no map need no bias at all.
-static void DescribeReceiver(const ShadowSurface& receiver, const ShadowMaps& maps, const Vector3d& point, const Vector3d& toLight, dsm_receiver& out)
+static void DescribeReceiver(ShadowSurface& receiver, const ShadowMaps& maps, const Vector3d& point, const Vector3d& toLight, dsm_receiver& out)
 {
 	for(int i = 0; i < 3; i++)
 		out.point[i] = point[i];
@@ -92,9 +133,9 @@ static void DescribeReceiver(const ShadowSurface& receiver, const ShadowMaps& ma
 
 	if(receiver.object == NULL)
 		return;
-	// Only the object of the scene's top level decides what a map holds. A part of a union does not tell whose it is.
-	const ObjectBase *top = (receiver.csg != NULL) ? receiver.csg : receiver.object;
-	if((Test_Flag(top, NO_SHADOW_FLAG) && !(top->Type & IS_CHILD_OBJECT)) || maps.Casters().IsUnmapped(top))
+	if(receiver.kind == ShadowSurface::kUnknown)
+		FindKind(receiver, maps);
+	if(receiver.kind == ShadowSurface::kUnmapped)
 		return;
 
 	const Vector3d normal((dot(receiver.normal, toLight) < 0.0) ? -receiver.normal : receiver.normal);
@@ -102,7 +143,7 @@ static void DescribeReceiver(const ShadowSurface& receiver, const ShadowMaps& ma
 		out.planes[0].normal[i] = normal[i];
 	out.planes[0].rise = 0.0;
 
-	if((typeid(*receiver.object) != typeid(Cone)) || !RodPlane(*static_cast<const Cone *>(receiver.object), toLight, normal, out.planes[1]))
+	if((receiver.kind != ShadowSurface::kRod) || !RodPlane(receiver, toLight, normal, out.planes[1]))
 		BoxPlane(receiver.object->BBox, point, toLight, out.planes[1]);
 	out.plane_count = 2;
 }
@@ -132,17 +173,12 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 	if(shadowReceiver.context == NULL)
 		shadowReceiver.context = maps.Current();
 
-	dsm_receiver receiver;
+	dsm_receiver& receiver = shadowReceiver.asked; // a footprint is found once, and serves all lights
 	double rgb[3];
 	DescribeReceiver(shadowReceiver.surface, maps, point, Vector3d(lightsourceray.Direction), receiver);
 	receiver.has_footprint = shadowReceiver.surface.seenByCamera;
 	if(receiver.has_footprint)
-	{
 		FindShadowFootprint(point);
-		for(int i = 0; i < 2; i++)
-			for(int k = 0; k < 3; k++)
-				receiver.footprint[i][k] = shadowReceiver.footprint[i][k];
-	}
 	if(survey != NULL)
 	{
 		survey->Request(index, receiver, lightsource, depth, lightsourceray, point, colour, ticket);
@@ -154,7 +190,7 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 	colour.red() *= rgb[0];
 	colour.green() *= rgb[1];
 	colour.blue() *= rgb[2];
-	if(!maps.Casters().Unmapped().empty())
+	if(MayMeetAny(maps.Casters().Unmapped(), lightsourceray, depth))
 		TraceUnmappedCasters(maps.Casters().Unmapped(), lightsource, depth, lightsourceray, colour, ticket);
 	if(map.atmosphere && (depth > kSameHit))
 	{

@@ -5,6 +5,8 @@
 #ifndef POVRAY_BACKEND_SHADOWRECEIVER_H
 #define POVRAY_BACKEND_SHADOWRECEIVER_H
 
+#include "backend/shadow/shadowplugin.h"
+
 namespace pov
 {
 
@@ -18,7 +20,19 @@ struct ShadowSurface
 	Vector3d normal;          ///< unperturbed, either side
 	bool seenByCamera;        ///< it is what `ShadowReceiver::cameraRay` has hit
 
-	ShadowSurface() : object(NULL), csg(NULL), seenByCamera(false) { }
+	/// What the look-ups to all lights have in common. The first of them finds it.
+	enum Kind
+	{
+		kUnknown,
+		kUnmapped, ///< it is in no map
+		kBoxed,    ///< its box bounds it
+		kRod       ///< it is a cone or cylinder
+	};
+	Kind kind;
+	Vector3d axis;            ///< of a rod; unit length
+	double radius;            ///< of its larger end, scene units
+
+	ShadowSurface() : object(NULL), csg(NULL), seenByCamera(false), kind(kUnknown), radius(0.0) { }
 };
 
 /// A camera ray's place in the image, pixels.
@@ -37,7 +51,7 @@ struct ShadowReceiver
 	const Ray *cameraRay;     ///< the camera ray that is being traced; NULL if it stands for no known part of the image
 	ShadowSample sample;      ///< of cameraRay
 	bool footprintKnown;
-	double footprint[2][3];   ///< of cameraRay on what it has hit, as dsm_receiver wants it
+	dsm_receiver asked;       ///< by the last look-up; its footprint is that of cameraRay on what it has hit, if that is known
 
 	ShadowReceiver() : survey(NULL), context(NULL), cameraRay(NULL), footprintKnown(false) { }
 };
@@ -53,6 +67,7 @@ class ShadowReceiverScope
 			surface.csg = isect.Csg;
 			surface.normal = normal;
 			surface.seenByCamera = (ray != NULL) && (ray == r.cameraRay);
+			surface.kind = ShadowSurface::kUnknown;
 		}
 		explicit ShadowReceiverScope(ShadowReceiver& r) : surface(r.surface), saved(r.surface) { surface = ShadowSurface(); }
 		~ShadowReceiverScope() { surface = saved; }

@@ -124,23 +124,17 @@ class ShadowTree::Builder
 			Part part, sides[2];
 		};
 
-		/// A part for one thread. Its nodes are counted from its own.
-		struct Branch
-		{
-			Part part;
-			vector<Node> nodes;
-		};
 		vector<Fork> forks;
-		vector<Branch> branches;
+		vector<Part> branches; ///< each is work for one thread
+		vector<Node> top;      ///< nodes of forks, and those with which branches begin
 
 		void ReadBoxes(size_t stretch);
 		void SplitFork(size_t fork) { Split(forks[fork].part, forks[fork].sides[0], forks[fork].sides[1]); }
 		void GrowBranch(size_t branch);
 		void Plan(const Part& part, vector<Fork>& wide);
-		void Graft(const Branch& branch);
 		static void SetLeaf(Node& node, const Part& part);
-		static unsigned int AddChildren(vector<Node>& nodes, unsigned int node);
-		void Build(vector<Node>& nodes, const Part& part);
+		static void SetChildren(Node& node, unsigned int children);
+		void Build(const Part& part, unsigned int& next);
 		void Split(const Part& part, Part& left, Part& right);
 		bool Cheapest(const Part& part, const Bins& bins, int& axis, int& bin) const;
 		void Divide(const Part& part, const Bins& bins, int axis, int bin, Part& left, Part& right);
@@ -168,7 +162,7 @@ ShadowTree::Builder::Builder(ShadowTree& t, const vector<dsm_box>& b, unsigned i
 
 	tree.order.resize(count);
 	tree.leaves.reset(new Slabs[count]);
-	tree.nodes.resize(1);
+	top.resize(1);
 	ShareWork(threads, (count + kBranchItems - 1) / kBranchItems, boost::bind(&Builder::ReadBoxes, this, _1));
 
 	whole.node = whole.first = 0;
@@ -181,7 +175,9 @@ ShadowTree::Builder::Builder(ShadowTree& t, const vector<dsm_box>& b, unsigned i
 		ShareWork(threads, forks.size(), boost::bind(&Builder::SplitFork, this, _1));
 		for(size_t i = 0; i < forks.size(); i++)
 		{
-			const unsigned int children = AddChildren(tree.nodes, forks[i].part.node);
+			const unsigned int children = top.size();
+			SetChildren(top[forks[i].part.node], children);
+			top.resize(children + 2);
 			for(unsigned int side = 0; side < 2; side++)
 			{
 				forks[i].sides[side].node = children + side;
@@ -190,9 +186,10 @@ ShadowTree::Builder::Builder(ShadowTree& t, const vector<dsm_box>& b, unsigned i
 		}
 	}
 
+	// a branch with n boxes has fewer than 2 n nodes, so each has its own stretch; what is left over is memory that is never touched
+	tree.nodes.reset(new Node[top.size() + 2 * size_t(count)]);
+	std::copy(top.begin(), top.end(), tree.nodes.get());
 	ShareWork(threads, branches.size(), boost::bind(&Builder::GrowBranch, this, _1));
-	for(size_t i = 0; i < branches.size(); i++)
-		Graft(branches[i]);
 }
 
 void ShadowTree::Builder::ReadBoxes(size_t stretch)
@@ -215,45 +212,24 @@ void ShadowTree::Builder::ReadBoxes(size_t stretch)
 /// Decides whether a part is one thread's work.
 void ShadowTree::Builder::Plan(const Part& part, vector<Fork>& wide)
 {
-	SetLeaf(tree.nodes[part.node], part);
+	SetLeaf(top[part.node], part);
 	if(part.count > kBranchItems)
 	{
 		wide.push_back(Fork());
 		wide.back().part = part;
 	}
 	else
-	{
-		branches.push_back(Branch());
-		branches.back().part = part;
-	}
+		branches.push_back(part);
 }
 
 void ShadowTree::Builder::GrowBranch(size_t branch)
 {
-	Part part(branches[branch].part);
-	vector<Node>& nodes = branches[branch].nodes;
+	const Part& part = branches[branch];
+	unsigned int next = top.size() + 2 * part.first;
 
-	part.node = 0;
-	nodes.reserve(part.count);
-	nodes.resize(1);
-	Build(nodes, part);
+	Build(part, next);
 	for(unsigned int i = part.first; i < part.first + part.count; i++)
 		tree.leaves[i] = Sides(items[i]);
-}
-
-/// Puts a branch in its place.
-void ShadowTree::Builder::Graft(const Branch& branch)
-{
-	const unsigned int before = tree.nodes.size() - 1; // its own node is there already
-
-	tree.nodes.insert(tree.nodes.end(), branch.nodes.begin() + 1, branch.nodes.end());
-	tree.nodes[branch.part.node] = branch.nodes[0];
-	for(unsigned int i = 0; i < branch.nodes.size(); i++)
-	{
-		Node& node = tree.nodes[(i == 0) ? branch.part.node : before + i];
-		if(node.count == 0)
-			node.first += before;
-	}
 }
 
 void ShadowTree::Builder::SetLeaf(Node& node, const Part& part)
@@ -263,29 +239,26 @@ void ShadowTree::Builder::SetLeaf(Node& node, const Part& part)
 	node.count = part.count;
 }
 
-/// @return     the left one
-unsigned int ShadowTree::Builder::AddChildren(vector<Node>& nodes, unsigned int node)
+void ShadowTree::Builder::SetChildren(Node& node, unsigned int children)
 {
-	const unsigned int children = nodes.size();
-
-	nodes[node].first = children;
-	nodes[node].count = 0;
-	nodes.resize(children + 2);
-	return children;
+	node.first = children;
+	node.count = 0;
 }
 
-void ShadowTree::Builder::Build(vector<Node>& nodes, const Part& part)
+/// @param[in,out]  next    the first node that is free
+void ShadowTree::Builder::Build(const Part& part, unsigned int& next)
 {
-	SetLeaf(nodes[part.node], part);
+	SetLeaf(tree.nodes[part.node], part);
 	if(part.count <= kLeafBoxes)
 		return;
 
 	Part left, right;
-	left.node = AddChildren(nodes, part.node);
-	right.node = left.node + 1;
+	left.node = next++;
+	right.node = next++;
+	SetChildren(tree.nodes[part.node], left.node);
 	Split(part, left, right);
-	Build(nodes, left);
-	Build(nodes, right);
+	Build(left, next);
+	Build(right, next);
 }
 
 void ShadowTree::Builder::Split(const Part& part, Part& left, Part& right)
@@ -428,7 +401,7 @@ ShadowTree::Walk::Walk(const ShadowTree& t, const dsm_ray& r, Stack& s) : tree(t
 	Entry root = { 0, 0.0 };
 
 	stack.clear();
-	if(!tree.nodes.empty() && line.Cross(tree.nodes[0].slabs, root.enter, leave))
+	if(tree.nodes && line.Cross(tree.nodes[0].slabs, root.enter, leave))
 		stack.push_back(root);
 }
 
@@ -483,7 +456,7 @@ ShadowTree::Sweep::Sweep(const ShadowTree& t, const ShadowBeam& b, Path& p, size
 
 	path.clear();
 	root.node = 0;
-	if(!tree.nodes.empty() && beam.Meets(tree.nodes[0].slabs.side[0], tree.nodes[0].slabs.side[1], root.rect))
+	if(tree.nodes && beam.Meets(tree.nodes[0].slabs.side[0], tree.nodes[0].slabs.side[1], root.rect))
 		path.push_back(root);
 }
 

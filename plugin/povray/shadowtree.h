@@ -114,7 +114,7 @@ class ShadowTree
 			unsigned int count; ///< 0: an inner node
 		};
 
-		std::vector<Node> nodes;
+		boost::scoped_array<Node> nodes; ///< the first is the root; none if there are no boxes. Not all places are used
 		std::vector<unsigned int> order; ///< boxes in the order of the leaves
 		boost::scoped_array<Slabs> leaves; ///< in that order
 };

@@ -244,6 +244,21 @@ static void frames_are_orthonormal(void **state) {
   }
 }
 
+/* face_level_within against a count of all levels, at all sizes next to powers of two. */
+static void levels_end_at_one_pixel(void **state) {
+  (void)state;
+  for (uint32_t power = 0; power < 15; ++power)
+    for (uint32_t width = (1u << power) - (power > 0); width <= (1u << power) + 1; ++width)
+      for (uint32_t height = 1; height <= width; height += width > 1 ? width - 1 : 1) {
+        face f = {.width = width, .height = height}, turned = {.width = height, .height = width};
+        for (uint32_t level = 0; level < MAX_LEVELS; ++level) {
+          uint32_t last = face_levels(&f) - 1, expected = level < last ? level : last;
+          assert_int_equal(face_level_within(&f, level), expected);
+          assert_int_equal(face_level_within(&turned, level), expected);
+        }
+      }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(casters_are_inside_and_rays_come_back),
@@ -253,6 +268,7 @@ int main(void) {
     cmocka_unit_test(point_lights_choose_between_one_face_and_six),
     cmocka_unit_test(cube_weights_are_continuous),
     cmocka_unit_test(frames_are_orthonormal),
+    cmocka_unit_test(levels_end_at_one_pixel),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
