@@ -11,7 +11,7 @@
 # the cheapest fixed map that is as close. PICTURE_glass is its picture (tests/report/measure.sh). References stay in build/accuracy/.
 set -eu
 . "$(dirname "$0")/../report/measure.sh"
-: "${AIMS:=0.02 0.01 0.005}" "${FIXED:=64,4 128,4 128,16 256,4 256,16 512,4 512,16 1024,4}" "${CHOSEN:=0.01}"
+: "${AIMS:=0.02 0.01 0.005}" "${FIXED:=64,4 128,4 128,16 256,1 256,4 256,16 512,1 512,4 512,16 1024,1 1024,4}" "${CHOSEN:=0.01}"
 : "${PICTURE_glass:=160:120:3:0:0:160:120}" "${PICTURE_hairball:=160:120:3:49:65:61:40}"
 : "${PICTURE_cloud:=120:90:2:0:0:120:90}" "${PICTURE_cloud_pipes:=120:90:2:0:0:120:90}" "${PICTURE_volume:=120:90:2:0:0:120:90}"
 : "${PICTURE_parallel_light:=160:120:3:0:0:160:120}" "${PICTURE_point_light:=160:120:3:0:0:160:120}"

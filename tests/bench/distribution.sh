@@ -9,7 +9,7 @@
 #                                                       (default 3) taken in turns, their ratio, and what was chosen;
 #                                                       MOST=5 SIZE="+W160 +H120" takes ten minutes
 #
-# Folders are those below scenes/ of the distribution; none: all. A scene that gives no picture in LIMIT seconds (default 60)
+# Folders, or single scenes, are those below scenes/ of the distribution; none: all. A scene that gives no picture in LIMIT seconds (default 60)
 # in either program fails, but for those that stock itself cannot render alone. Pictures stay in build/distribution/.
 # MOST=6 takes six scenes of each folder, evenly spread. SIZE="+W120 +H90" and OPTIONS="+A0.1 -J" go to every render.
 set -u
