@@ -233,10 +233,11 @@ static void deltas_are_deltas(void **state) {
   (void)state;
   told start = deltas_told();
   READ((void)0);
-  REFUSED(s.layout = TILE_COLOURED; s.coloured[3] = 1);
+  REFUSED(s.layout = TILE_COLOURED; s.coloured[200] = 1);
   REFUSED(s.rest = 1);
   REFUSED(s.records[6] = 0);                     /* more of the start, which is nothing */
   REFUSED(s.count[200] = 1);                     /* more, which is not there */
+  REFUSED(s.count[3] = 1; s.records[0] = 5 << 1 | 1; s.records[1] = 5 << 1 | 1; s.records[2] = 1);   /* but another pixel's */
   REFUSED(s.count[3] = 4; s.records[4] = s.records[5]; s.records[5] = s.records[6]);   /* a fall that no vertex has */
   REFUSED(s.count[3] = 3; s.records[3] = s.records[5]; s.records[4] = s.records[6]);   /* a depth */
   REFUSED(s.records[2] = 63);                    /* adds nothing to the depth */
