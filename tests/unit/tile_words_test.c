@@ -184,7 +184,6 @@ static void pixels_do_not_contradict(void **state) {
   told start = absolute_told();
   REFUSED(s.marked[3] = 1);
   REFUSED(s.marked[9] = 1);
-  REFUSED(s.coloured[3] = 1);                    /* of three records */
   REFUSED(s.coloured[20] = 1);                   /* of none */
   REFUSED(s.records[5] = 14 << 4 | 14; s.records[6] = 10 << 4 | 10);   /* in grey */
   READ(s.records[5] = 14 << 4 | 13; s.records[6] = 10 << 4 | 10);
@@ -193,6 +192,7 @@ static void pixels_do_not_contradict(void **state) {
                .records = {1 << 8 | 4, 3 << 8 | 2}};
   start = wide;
   READ((void)0);
+  REFUSED(s.count[9] = 3);                       /* half a vertex more */
   REFUSED(s.value_bits = 9; s.records[0] = 1 << 9 | 4; s.records[1] = 3 << 9 | 2);   /* the third channel could say less than the others */
 }
 
@@ -233,10 +233,11 @@ static void deltas_are_deltas(void **state) {
   (void)state;
   told start = deltas_told();
   READ((void)0);
-  REFUSED(s.layout = TILE_COLOURED; s.coloured[3] = 1);
+  REFUSED(s.layout = TILE_COLOURED; s.coloured[200] = 1);
   REFUSED(s.rest = 1);
   REFUSED(s.records[6] = 0);                     /* more of the start, which is nothing */
   REFUSED(s.count[200] = 1);                     /* more, which is not there */
+  REFUSED(s.count[3] = 1; s.records[0] = 5 << 1 | 1; s.records[1] = 5 << 1 | 1; s.records[2] = 1);   /* but another pixel's */
   REFUSED(s.count[3] = 4; s.records[4] = s.records[5]; s.records[5] = s.records[6]);   /* a fall that no vertex has */
   REFUSED(s.count[3] = 3; s.records[3] = s.records[5]; s.records[4] = s.records[6]);   /* a depth */
   REFUSED(s.records[2] = 63);                    /* adds nothing to the depth */
