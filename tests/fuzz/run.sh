@@ -84,6 +84,8 @@ make_seeds() {
   local light='light_source { <4, 6, -4>, 1' ball='sphere { 0, 1 pigment { rgb 1 } }'
   seed grey "$light spotlight point_at 0 radius 30 falloff 40 deep_shadow { resolution 1 samples 4 save_file \"grey.exr\" } } $ball"
   seed levels "$light deep_shadow { resolution 20 samples 4 save_file \"levels.exr\" } } $ball"
+  seed deltas "$light deep_shadow { resolution 16 samples 64 tolerance 0.03 save_file \"deltas.exr\" } } $ball
+    sphere { <.3, 1.2, 0>, .3 pigment { rgb 1 } } sphere { <-.4, 1.5, .2>, .4 pigment { rgb 1 } }"
   seed glass "$light parallel point_at 0 deep_shadow { resolution 2 samples 4 save_file \"glass.exr\" } }
     sphere { 0, 1 pigment { rgbf <1, .5, .2, .9> } } box { -.5, <.5, 1.5, .5> pigment { rgb 1 } }"
   seed cube "light_source { <.1, .2, .1>, 1 deep_shadow { resolution 1 samples 1 save_file \"cube.exr\" } }
