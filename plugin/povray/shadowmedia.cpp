@@ -42,6 +42,10 @@ const double kEvenShare = 0.25;
 /// Light that is left below this share of the tolerance is not worth a step.
 const double kDarkShare = 0.5;
 
+/// A jump may lie at either end of a step, half the step from where it is taken to be; steps are judged by quarters of them. It may
+/// lie there for all of a pixel's rays, which nothing then averages out: slackness is not for jumps.
+const double kJump = 2.0;
+
 /// The integral is never asked to be better than this.
 const double kLeastTolerance = 1.0e-4;
 
@@ -51,7 +55,8 @@ const double kNothing = 1.0e-9;
 /// A run is passed when it has come to this many samples.
 const size_t kMostPlanned = 64;
 
-/// Neighbours learn from a ray that is nearer to them than this share of a first step: they pass what it has passed.
+/// Neighbours learn from a ray that is nearer to them than this share of a first step: they pass what it has passed, unless it has met a
+/// jump, which may be anywhere else for them.
 const double kNearShare = 0.5;
 
 /// So many steps, and half as many, may be one for them if it bends by less than this share of what is allowed.
@@ -79,9 +84,18 @@ void Quarters(double a, double b, double slopeA, double slopeB, double out[5])
 	out[4] = b;
 }
 
+/// Share of the change between two samples that may be a jump anywhere between them: what is more than the changes on both sides. A
+/// side of which nothing is known is taken for the same as the other one.
+double Jump(double before, double a, double b, double after, bool bothSides)
+{
+	const double change = fabs(b - a), around = (fabs(a - before) + fabs(after - b)) * (bothSides ? 1.0 : 2.0);
+
+	return (change > around) ? 1.0 - around / change : 0.0;
 }
 
-ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), grows(false), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0), guide(NULL), guided(false)
+}
+
+ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), grows(false), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0), guide(NULL), guideJumps(false), guided(false), jumped(0.0)
 {
 }
 
@@ -106,6 +120,7 @@ void ShadowMedia::Add(const ShadowMedium& medium)
 void ShadowMedia::BeginPixel()
 {
 	guide = NULL;
+	guideJumps = false;
 	calm.clear();
 }
 
@@ -415,6 +430,7 @@ void ShadowMedia::Run(double dark)
 		const double bend = grey ? Bend<1>(before, passed[last], ahead[next], after, halves) : Bend<3>(before, passed[last], ahead[next], after, halves);
 		if((bend * points.back().visible <= allowedInRun) || (to - from <= shortest))
 		{
+			guideJumps = guideJumps || ((guide == ray) && (jumped * points.back().visible > kCalmShare * allowed));
 			Advance(middle, halves[0]);
 			Advance(to, halves[1]);
 			passed.push_back(ahead.back());
@@ -434,14 +450,16 @@ void ShadowMedia::Run(double dark)
 			points.resize(points.size() - 2, points.front());
 		}
 	}
-	if((guide == ray) && (guideMedia == media))
+	if(guideJumps)
+		calm.clear();
+	else if((guide == ray) && (guideMedia == media))
 		Learn(begin);
 	allowedInRun = allowedSmooth;
 	shortest = kHuge;
 }
 
-/// How much a cubic through four samples differs from a straight line between the inner two, in optical depth. Quarters of
-/// the way count one by one: where the density jumps, only they tell.
+/// How much a cubic through four samples differs from a straight line between the inner two, in optical depth, or how far off a
+/// jump between them may be. Quarters of the way count one by one: where the map of a density jumps, only they tell.
 /// @param[in]      before,after    the outer samples, or NULL
 /// @param[out]     halves          optical depth of both halves of the way, along the cubic
 template<int kChannels>
@@ -450,7 +468,8 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 	const double length = to.depth - from.depth;
 	const double lengthBefore = (before != NULL) ? from.depth - before->depth : 0.0;
 	const double lengthAfter = (after != NULL) ? after->depth - to.depth : 0.0;
-	double curved[4][3] = { { 0.0 } }, straight[4][3] = { { 0.0 } };
+	const bool bothSides = (before != NULL) && (after != NULL);
+	double curved[4][3] = { { 0.0 } }, straight[4][3] = { { 0.0 } }, jumps[3] = { 0.0 };
 
 	for(size_t i = 0; i < mapped.size(); i++)
 	{
@@ -463,6 +482,13 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 
 		Quarters(a, b, slopeA, slopeB, cubic);
 		const ShadowTransfer& transfer = mapped[i]->Mapped()->Transfer();
+		const double jump = Jump((before != NULL) ? before->value[i] : a, a, b, (after != NULL) ? after->value[i] : b, bothSides);
+		if(jump > 0.0)
+		{
+			const DblRGBColour change((transfer.At(b) - transfer.At(a)) * scale);
+			for(int k = 0; k < kChannels; k++)
+				jumps[k] += jump * fabs(change[k]);
+		}
 		const int entry = transfer.Straight(*std::min_element(cubic, cubic + 5), *std::max_element(cubic, cubic + 5), 0);
 		if(entry != ShadowTransfer::kBent) // the means are in the middle
 		{
@@ -491,6 +517,7 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 		const double slopeB = (after != NULL) ? Slope(a, b, after->other[k], length, lengthAfter, length) : b - a;
 		double cubic[5];
 
+		jumps[k] += fabs(b - a) * Jump((before != NULL) ? before->other[k] : a, a, b, (after != NULL) ? after->other[k] : b, bothSides);
 		Quarters(a, b, slopeA, slopeB, cubic);
 		for(int q = 0; q < 4; q++)
 		{
@@ -500,12 +527,14 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 	}
 
 	double bend = 0.0;
+	jumped = 0.0;
 	for(int k = 0; k < kChannels; k++)
 	{
 		double sum = 0.0;
 		for(int q = 0; q < 4; q++)
 			sum += fabs(curved[q][k] - straight[q][k]);
-		bend = max(bend, sum);
+		jumped = max(jumped, kJump * jumps[k] * 0.25 * length);
+		bend = max(bend, max(sum, kJump * jumps[k] * allowedInRun / allowed));
 	}
 	for(int k = 0; k < 3; k++)
 	{
