@@ -84,11 +84,11 @@ void Quarters(double a, double b, double slopeA, double slopeB, double out[5])
 	out[4] = b;
 }
 
-/// Share of the change between two samples that may be a jump anywhere between them: what is more than the changes on both sides. A
+/// Share of the change between two samples that may be a jump anywhere between them: what is more than twice the changes on both sides. A
 /// side of which nothing is known is taken for the same as the other one.
 double Jump(double before, double a, double b, double after, bool bothSides)
 {
-	const double change = fabs(b - a), around = (fabs(a - before) + fabs(after - b)) * (bothSides ? 1.0 : 2.0);
+	const double change = fabs(b - a), around = (fabs(a - before) + fabs(after - b)) * (bothSides ? 2.0 : 4.0);
 
 	return (change > around) ? 1.0 - around / change : 0.0;
 }
