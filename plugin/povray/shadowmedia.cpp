@@ -42,8 +42,7 @@ const double kEvenShare = 0.25;
 /// Light that is left below this share of the tolerance is not worth a step.
 const double kDarkShare = 0.5;
 
-/// A jump may lie at either end of a step, half the step from where it is taken to be; steps are judged by quarters of them. It may
-/// lie there for all of a pixel's rays, which nothing then averages out: slackness is not for jumps.
+/// A jump may lie half a step, so two quarters, from where it is taken to be; and for all of a pixel's rays: it has no slackness.
 const double kJump = 2.0;
 
 /// The integral is never asked to be better than this.
@@ -55,8 +54,7 @@ const double kNothing = 1.0e-9;
 /// A run is passed when it has come to this many samples.
 const size_t kMostPlanned = 64;
 
-/// Neighbours learn from a ray that is nearer to them than this share of a first step: they pass what it has passed, unless it has met a
-/// jump, which may be anywhere else for them.
+/// Neighbours learn from a ray nearer to them than this share of a first step, unless it has met a jump: they pass what it has passed.
 const double kNearShare = 0.5;
 
 /// So many steps, and half as many, may be one for them if it bends by less than this share of what is allowed.
@@ -84,13 +82,12 @@ void Quarters(double a, double b, double slopeA, double slopeB, double out[5])
 	out[4] = b;
 }
 
-/// Share of the change between two samples that may be a jump anywhere between them: what is more than twice the changes on both sides. A
-/// side of which nothing is known is taken for the same as the other one.
+/// Share of the change between two samples that may be a jump anywhere between them: what is more than twice the changes on both sides,
+/// or four times the one that is known.
 double Jump(double before, double a, double b, double after, bool bothSides)
 {
-	const double change = fabs(b - a), around = (fabs(a - before) + fabs(after - b)) * (bothSides ? 2.0 : 4.0);
-
-	return (change > around) ? 1.0 - around / change : 0.0;
+	const double around = (fabs(a - before) + fabs(after - b)) * (bothSides ? 2.0 : 4.0);
+	return (fabs(b - a) > around) ? 1.0 - around / fabs(b - a) : 0.0;
 }
 
 }
@@ -304,7 +301,7 @@ void ShadowMedia::FindGuide(double front, double back)
 		guide = ray;
 		guideMedia = media;
 	}
-	guided = (guide != ray) && (guideMedia == media) && IsNear(*guide, front, near) && IsNear(*guide, back, near);
+	guided = (guide != ray) && !guideJumps && (guideMedia == media) && IsNear(*guide, front, near) && IsNear(*guide, back, near);
 }
 
 /// Plans samples as far as the guide tells of long steps that end before `depth`.
@@ -450,9 +447,7 @@ void ShadowMedia::Run(double dark)
 			points.resize(points.size() - 2, points.front());
 		}
 	}
-	if(guideJumps)
-		calm.clear();
-	else if((guide == ray) && (guideMedia == media))
+	if((guide == ray) && (guideMedia == media))
 		Learn(begin);
 	allowedInRun = allowedSmooth;
 	shortest = kHuge;
@@ -470,7 +465,6 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 	const double lengthAfter = (after != NULL) ? after->depth - to.depth : 0.0;
 	const bool bothSides = (before != NULL) && (after != NULL);
 	double curved[4][3] = { { 0.0 } }, straight[4][3] = { { 0.0 } }, jumps[3] = { 0.0 };
-
 	for(size_t i = 0; i < mapped.size(); i++)
 	{
 		const double a = from.value[i], b = to.value[i];
@@ -483,12 +477,9 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 		Quarters(a, b, slopeA, slopeB, cubic);
 		const ShadowTransfer& transfer = mapped[i]->Mapped()->Transfer();
 		const double jump = Jump((before != NULL) ? before->value[i] : a, a, b, (after != NULL) ? after->value[i] : b, bothSides);
-		if(jump > 0.0)
-		{
-			const DblRGBColour change((transfer.At(b) - transfer.At(a)) * scale);
-			for(int k = 0; k < kChannels; k++)
-				jumps[k] += jump * fabs(change[k]);
-		}
+		const DblRGBColour change((jump > 0.0) ? (transfer.At(b) - transfer.At(a)) * scale * jump : DblRGBColour(0.0));
+		for(int k = 0; k < kChannels; k++)
+			jumps[k] += fabs(change[k]);
 		const int entry = transfer.Straight(*std::min_element(cubic, cubic + 5), *std::max_element(cubic, cubic + 5), 0);
 		if(entry != ShadowTransfer::kBent) // the means are in the middle
 		{
@@ -526,8 +517,7 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 		}
 	}
 
-	double bend = 0.0;
-	jumped = 0.0;
+	double bend = jumped = 0.0;
 	for(int k = 0; k < kChannels; k++)
 	{
 		double sum = 0.0;
