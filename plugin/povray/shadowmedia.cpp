@@ -42,6 +42,9 @@ const double kEvenShare = 0.25;
 /// Light that is left below this share of the tolerance is not worth a step.
 const double kDarkShare = 0.5;
 
+/// A jump may lie half a step, so two quarters, from where it is taken to be; and for all of a pixel's rays: it has no slackness.
+const double kJump = 2.0;
+
 /// The integral is never asked to be better than this.
 const double kLeastTolerance = 1.0e-4;
 
@@ -51,7 +54,7 @@ const double kNothing = 1.0e-9;
 /// A run is passed when it has come to this many samples.
 const size_t kMostPlanned = 64;
 
-/// Neighbours learn from a ray that is nearer to them than this share of a first step: they pass what it has passed.
+/// Neighbours learn from a ray nearer to them than this share of a first step, unless it has met a jump: they pass what it has passed.
 const double kNearShare = 0.5;
 
 /// So many steps, and half as many, may be one for them if it bends by less than this share of what is allowed.
@@ -79,9 +82,17 @@ void Quarters(double a, double b, double slopeA, double slopeB, double out[5])
 	out[4] = b;
 }
 
+/// Share of the change between two samples that may be a jump anywhere between them: what is more than twice the changes on both sides,
+/// or four times the one that is known.
+double Jump(double before, double a, double b, double after, bool bothSides)
+{
+	const double around = (fabs(a - before) + fabs(after - b)) * (bothSides ? 2.0 : 4.0);
+	return (fabs(b - a) > around) ? 1.0 - around / fabs(b - a) : 0.0;
 }
 
-ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), grows(false), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0), guide(NULL), guided(false)
+}
+
+ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), grows(false), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0), guide(NULL), guideJumps(false), guided(false), jumped(0.0)
 {
 }
 
@@ -106,6 +117,7 @@ void ShadowMedia::Add(const ShadowMedium& medium)
 void ShadowMedia::BeginPixel()
 {
 	guide = NULL;
+	guideJumps = false;
 	calm.clear();
 }
 
@@ -289,7 +301,7 @@ void ShadowMedia::FindGuide(double front, double back)
 		guide = ray;
 		guideMedia = media;
 	}
-	guided = (guide != ray) && (guideMedia == media) && IsNear(*guide, front, near) && IsNear(*guide, back, near);
+	guided = (guide != ray) && !guideJumps && (guideMedia == media) && IsNear(*guide, front, near) && IsNear(*guide, back, near);
 }
 
 /// Plans samples as far as the guide tells of long steps that end before `depth`.
@@ -415,6 +427,7 @@ void ShadowMedia::Run(double dark)
 		const double bend = grey ? Bend<1>(before, passed[last], ahead[next], after, halves) : Bend<3>(before, passed[last], ahead[next], after, halves);
 		if((bend * points.back().visible <= allowedInRun) || (to - from <= shortest))
 		{
+			guideJumps = guideJumps || ((guide == ray) && (jumped * points.back().visible > kCalmShare * allowed));
 			Advance(middle, halves[0]);
 			Advance(to, halves[1]);
 			passed.push_back(ahead.back());
@@ -440,8 +453,8 @@ void ShadowMedia::Run(double dark)
 	shortest = kHuge;
 }
 
-/// How much a cubic through four samples differs from a straight line between the inner two, in optical depth. Quarters of
-/// the way count one by one: where the density jumps, only they tell.
+/// How much a cubic through four samples differs from a straight line between the inner two, in optical depth, or how far off a
+/// jump between them may be. Quarters of the way count one by one: where the map of a density jumps, only they tell.
 /// @param[in]      before,after    the outer samples, or NULL
 /// @param[out]     halves          optical depth of both halves of the way, along the cubic
 template<int kChannels>
@@ -450,8 +463,8 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 	const double length = to.depth - from.depth;
 	const double lengthBefore = (before != NULL) ? from.depth - before->depth : 0.0;
 	const double lengthAfter = (after != NULL) ? after->depth - to.depth : 0.0;
-	double curved[4][3] = { { 0.0 } }, straight[4][3] = { { 0.0 } };
-
+	const bool bothSides = (before != NULL) && (after != NULL);
+	double curved[4][3] = { { 0.0 } }, straight[4][3] = { { 0.0 } }, jumps[3] = { 0.0 };
 	for(size_t i = 0; i < mapped.size(); i++)
 	{
 		const double a = from.value[i], b = to.value[i];
@@ -463,6 +476,10 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 
 		Quarters(a, b, slopeA, slopeB, cubic);
 		const ShadowTransfer& transfer = mapped[i]->Mapped()->Transfer();
+		const double jump = Jump((before != NULL) ? before->value[i] : a, a, b, (after != NULL) ? after->value[i] : b, bothSides);
+		const DblRGBColour change((jump > 0.0) ? (transfer.At(b) - transfer.At(a)) * scale * jump : DblRGBColour(0.0));
+		for(int k = 0; k < kChannels; k++)
+			jumps[k] += fabs(change[k]);
 		const int entry = transfer.Straight(*std::min_element(cubic, cubic + 5), *std::max_element(cubic, cubic + 5), 0);
 		if(entry != ShadowTransfer::kBent) // the means are in the middle
 		{
@@ -491,6 +508,7 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 		const double slopeB = (after != NULL) ? Slope(a, b, after->other[k], length, lengthAfter, length) : b - a;
 		double cubic[5];
 
+		jumps[k] += fabs(b - a) * Jump((before != NULL) ? before->other[k] : a, a, b, (after != NULL) ? after->other[k] : b, bothSides);
 		Quarters(a, b, slopeA, slopeB, cubic);
 		for(int q = 0; q < 4; q++)
 		{
@@ -499,13 +517,14 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 		}
 	}
 
-	double bend = 0.0;
+	double bend = jumped = 0.0;
 	for(int k = 0; k < kChannels; k++)
 	{
 		double sum = 0.0;
 		for(int q = 0; q < 4; q++)
 			sum += fabs(curved[q][k] - straight[q][k]);
-		bend = max(bend, sum);
+		jumped = max(jumped, kJump * jumps[k] * 0.25 * length);
+		bend = max(bend, max(sum, kJump * jumps[k] * allowedInRun / allowed));
 	}
 	for(int k = 0; k < 3; k++)
 	{

@@ -106,6 +106,7 @@ class ShadowMedia
 		vector<Sample> planned;       ///< nearest first
 		vector<Sample> passed, ahead; ///< the nearest to the end of what is passed last in both
 		double allowedInRun;
+		mutable double jumped;        ///< optical depth by which a jump in the step that was looked at last may be off
 		double shortest;
 
 		// of a pixel
@@ -113,6 +114,7 @@ class ShadowMedia
 		const dsm_ray *guide;         ///< its first ray in media; NULL: none yet
 		vector<const ShadowMedium *> guideMedia; ///< the first ones that it met
 		vector<Calm> calm;            ///< where one step would have done for several of that ray's, in those media
+		bool guideJumps;              ///< the density does, somewhere on its way: it tells nothing
 		bool guided;                  ///< the ray under way is near enough to it, in the same media
 
 		void Begin(double front, double back);
