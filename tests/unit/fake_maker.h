@@ -127,11 +127,10 @@ static inline dsm_statistics close_all(dsm_map *map, fake_maker *makers, int cou
   return s;
 }
 
-/* `used` excepted. */
+/* What the cache writes into them excepted. */
 static inline int same_tile(const tile *a, const tile *b) {
-  size_t used = offsetof(tile, used), behind = used + 1;
-  return a->size == b->size && memcmp(a, b, used) == 0
-      && memcmp((const char *)a + behind, (const char *)b + behind, a->size - behind) == 0;
+  return a->size == b->size && memcmp(a, b, offsetof(tile, used)) == 0 && a->volume == b->volume
+      && memcmp(a + 1, b + 1, a->size - sizeof(tile)) == 0;
 }
 
 #endif
