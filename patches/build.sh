@@ -118,8 +118,9 @@ configure_tree() {
   local arguments=(
     "COMPILED_BY=Deep shadows for POV-Ray" --prefix="$prefix"
     --without-x --without-libsdl --with-boost-thread=boost_thread
-    # No -march=native and no contraction: images must not depend on the machine that compiled.
-    --disable-optimiz --disable-strip "CXXFLAGS=-O3 -ffp-contract=off $quiet"
+    # No -march=native and no contraction: images must not depend on the machine that compiled. Loops and jumps are aligned, as the
+    # interpreter of functions is a quarter slower where the linker happens to put it elsewhere (measured: AMD EPYC).
+    --disable-optimiz --disable-strip "CXXFLAGS=-O3 -falign-loops=32 -falign-jumps=32 -ffp-contract=off $quiet"
   )
   [ "${arguments[*]}" != "$(cat "$tree/.arguments" 2>/dev/null)" ] || return 0
   echo "Configuring POV-Ray ($which)"
