@@ -176,6 +176,8 @@ static inline __attribute__((always_inline)) int delta_find(const visibility_cod
   return 1;
 }
 
+/* Whether the start of a pixel, which has records, is a vertex. */
+int delta_starts_with_vertex(const delta_word_shape *s, uint32_t first, uint32_t count);
 /* Vertices of a pixel with so many records. */
 uint32_t delta_vertices(const visibility_codes *codes, uint32_t first, uint32_t count);
 /* To one of them, in time that grows with its number. */

@@ -5,28 +5,31 @@
 
 #include "core/rounding.h"
 #include "map/depth_tile.h"
+#include "map/read_tile.h"
 #include "tool/open_map.h"
+
+typedef struct {
+  const open_map *map;
+  uint64_t tiles, tiles_wrong, pixels;
+  vertices pixel;   /* the one that is looked at */
+} tally;
 
 /* What is wrong with a pixel, or NULL. Who reads a tile sees already that depths never fall, that visibility never grows and
  * stays in [0,1]; and before its first vertex it is 1. */
-static const char *wrong_with(const visibility *v, double reach)
+static const char *wrong_with(const vertices *pixel, double reach)
 {
-  for (uint32_t i = 0; i < v->count; i++) {
-    if (visibility_depth(v, i) > reach)
+  const vertex *v = pixel->data;
+  for (size_t i = 0; i < pixel->count; i++) {
+    if (v[i].z > reach)
       return "has a depth behind the casters";
-    if (i > 1 && visibility_depth(v, i) <= visibility_depth(v, i - 2))
+    if (i > 1 && v[i].z <= v[i - 2].z)
       return "has three vertices at one depth";
   }
   return NULL;
 }
 
-typedef struct {
-  const open_map *map;
-  uint64_t tiles, tiles_wrong, pixels;
-} tally;
-
 /* What is wrong with one pixel of a tile, or NULL. */
-static const char *wrong_in(const tile *t, uint32_t place, const tile_extent *extent, const face *f, double moved)
+static const char *wrong_in(vertices *pixel, const tile *t, uint32_t place, const tile_extent *extent, const face *f, double moved)
 {
   double rounding = 0x1p-20 * (f->far_depth - f->near_depth);   /* depths became floats on their way here */
   int outside = place % TILE_SIDE >= extent->across || place / TILE_SIDE >= extent->up;
@@ -41,7 +44,10 @@ static const char *wrong_in(const tile *t, uint32_t place, const tile_extent *ex
     return "stores something, but lies outside the face";
   if (v.count && !(t->near_depth >= f->near_depth - rounding))
     return "has a depth in front of the casters";
-  return wrong_with(&v, f->far_depth - t->near_depth + rounding + (t->tolerance > 0 ? moved : 0));
+  pixel->count = 0;
+  if (read_vertices(&v, 0, pixel) != DSM_OK)
+    return "takes more memory than there is";
+  return wrong_with(pixel, f->far_depth - t->near_depth + rounding + (t->tolerance > 0 ? moved : 0));
 }
 
 static void check_tile(tally *sum, const map_grid *grid, const tile_key *key, const tile *t)
@@ -53,7 +59,7 @@ static void check_tile(tally *sum, const map_grid *grid, const tile_key *key, co
   double moved = rounding_reach(p, key->face, key->level, f->far_depth);
   sum->pixels += extent.across * extent.up;
   for (uint32_t place = 0; place < TILE_PIXELS; place++) {
-    const char *what = wrong_in(t, place, &extent, f, moved);
+    const char *what = wrong_in(&sum->pixel, t, place, &extent, f, moved);
     if (!what)
       continue;
     trouble("%s: pixel %u, %d of face %u, level %u %s.", sum->map->path, (unsigned)(key->x * TILE_SIDE + place % TILE_SIDE),
@@ -90,6 +96,7 @@ static int check_map(const open_map *map, void *unused)
   (void)unused;
   tally sum = {.map = map};
   check_tiles(&sum);
+  vertices_free(&sum.pixel);
   if (sum.tiles_wrong)
     return trouble("%s is damaged: %llu of %llu tiles are bad.", map->path, (unsigned long long)sum.tiles_wrong,
                    (unsigned long long)sum.tiles);
