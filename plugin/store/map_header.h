@@ -5,7 +5,7 @@
 
 #include "core/projection.h"
 #include "core/settings.h"
-#include "store/deep_exr.h"
+#include "store/attribute_list.h"
 #include "store/map_reason.h"
 #include "store/stored_tile.h"
 
@@ -44,15 +44,9 @@ uint32_t map_header_format(const map_header *header);
 /* Of the map's tiles in a file. */
 stored_kind map_header_kind(const map_header *header);
 
-/* The header as attributes of a file, "dsm:…", in one fixed order; read back, they give a header with the same bits. */
-typedef struct {
-  deep_attribute *items;     /* names and texts are owned */
-  uint32_t count, room;
-} attribute_list;
-
-/* DSM_NO_MEMORY. Free the list in any case. */
+/* The header as attributes of a file, "dsm:…", in one fixed order; read back, they give a header with the same bits.
+ * DSM_NO_MEMORY. Free the list in any case. */
 dsm_result map_header_write(const map_header *header, attribute_list *list);
-void attribute_list_free(attribute_list *list);
 
 /* `get` returns the text of an attribute or NULL. DSM_REFUSED, with a sentence about `path`: it has no format or a newer
  * one, or not everything that map_header_write gives, text for text. Otherwise `header` is the caller's to free. */
