@@ -42,11 +42,10 @@ static inline void push(chain *chain, point p, int side) {
   chain->points[chain->end++] = p;
 }
 
-int bundle_narrow(bundle *b, double z, double low, double high) {
-  double most = line_at(&b->rise.line, z), least = line_at(&b->fall.line, z);
-  if (low > most || high < least) return 0;
+int bundle_narrow(bundle *b, double z, double low, double high, double fall, double rise) {
+  if (low > rise || high < fall) return 0;
   point bottom = {z, low}, top = {z, high};
-  int lowers = high < most, raises = low > least;
+  int lowers = high < rise, raises = low > fall;
   if (lowers) turn(&b->rise, &b->floor, top, 1, b->level);
   if (raises) turn(&b->fall, &b->roof, bottom, -1, b->level);
   /* An end that touches no line now touches none later. */
