@@ -78,7 +78,7 @@ FOR_CHANNELS dsm_result run(sweep *s, int channels, const depth_key *keys, const
 {
   size_t begin = mean->count;
   rgb last = rgb_grey(1);
-  double noise = 0, variance = 0;
+  double noise = 0, variance = 0, ceiling = noise_ceiling(s->rays);
   dsm_result result = DSM_OK;
   for (size_t i = 0; i < in->count && result == DSM_OK;) {
     double z = keys[i].z;
@@ -100,7 +100,7 @@ FOR_CHANNELS dsm_result run(sweep *s, int channels, const depth_key *keys, const
       profile->variance[n - 2] = variance;
       if (s->pairs == 0)
         s->squares = 0;   /* without the rounding of those that were */
-      profile->allowed[n - 1] = noise = noise_allowed(s->squares, (double)s->pairs, s->rays);
+      profile->allowed[n - 1] = noise = noise_allowed(s->squares, (double)s->pairs, s->rays, ceiling);
       profile->variance[n - 1] = variance = noise_variance(s->squares, s->rays);
     }
   }

@@ -14,6 +14,20 @@ void bundle_begin(bundle *b, int level) {
   b->start = b->end = -HUGE_VAL;
 }
 
+void bundle_begin_at(bundle *b, double z, double low, double high) {
+  point bottom = {z, low}, top = {z, high};
+  bundle_begin(b, 0);
+  b->start = b->end = z;
+  if (high < HUGE_VAL) {
+    b->rise.support = top;
+    b->roof.points[b->roof.end++] = top;
+  }
+  if (low > -HUGE_VAL) {
+    b->fall.support = bottom;
+    b->floor.points[b->floor.end++] = bottom;
+  }
+}
+
 /* Below, `side` is 1 for the rise, the floor and all that is seen from above, and -1 for their mirror images. */
 
 /* Turns a line inwards, to pass p; `chain` is what supports it on the left. */

@@ -42,6 +42,8 @@ typedef struct {
 } bundle;
 
 void bundle_begin(bundle *b, int level);
+/* With a first gate that any line of the bundle passes. */
+void bundle_begin_at(bundle *b, double z, double low, double high);
 
 /* Adds a gate, not left of the one before; an end may be infinite. 0: no line passes, and nothing changed. */
 static inline int bundle_pass(bundle *b, double z, double low, double high);

@@ -28,9 +28,8 @@ static chord cut(search *s, size_t k, gate g, double least) {
 /* The bundle of all lines through the goal, up to its far end, which lies between places k and k + 1. */
 static int begin_at_goal(search *s, const chord *goal, size_t k, double least) {
   const tunnel *t = &s->tunnel;
-  bundle_begin(&s->lines, 0);
   gate near = gate_near(goal), far = gate_far(goal);
-  if (!bundle_pass(&s->lines, -goal->near.z, near.low, near.high)) return 0;
+  bundle_begin_at(&s->lines, -goal->near.z, near.low, near.high);
   size_t i = k;
   while (i + 1 < t->count && t->places[i + 1].z < goal->near.z) ++i;
   for (; i > k; --i) {

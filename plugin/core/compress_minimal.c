@@ -97,9 +97,8 @@ static size_t look_ahead(job *j, const piece *p, const origin *o, target *to) {
   }
   if (to->goal) ends[count].z = to->goal->near.z, ends[count++].gate = gate_near(to->goal);
 
-  bundle_begin(&j->search.lines, 0);
   gate begin = from->side == WALL ? (gate){from->near.y, from->near.y} : gate_near(from);
-  bundle_pass(&j->search.lines, from->near.z, begin.low, begin.high);
+  bundle_begin_at(&j->search.lines, from->near.z, begin.low, begin.high);
   to->passed = ALL;
   for (size_t k = o->place;; ++k) {
     double z = k <= to->stop ? places[k].z : HUGE_VAL;

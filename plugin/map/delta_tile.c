@@ -8,8 +8,8 @@ enum { ADDING_COSTS = 2 };
 
 enum { LENGTHS = MOST_CODE_BITS + 2 };   /* bits of a number; of a depth, that of one more counts */
 
-/* How many numbers have so many bits. */
-typedef struct { uint32_t starts[LENGTHS], depths[LENGTHS], falls[LENGTHS]; } lengths;
+/* How many numbers have so many bits; none has `end` or more. */
+typedef struct { uint32_t starts[LENGTHS], depths[LENGTHS], falls[LENGTHS], end; } lengths;
 
 static uint32_t length_of(uint32_t number)
 {
@@ -62,6 +62,8 @@ static int measure(const coded_tile *t, lengths *n)
   for (uint32_t i = 0; i < TILE_PIXELS; v += t->plan.count[i++])
     if (t->plan.coloured[i] || (t->plan.count[i] && !measure_pixel(v, t->plan.count[i], one, n)))
       return 0;
+  for (n->end = LENGTHS; n->end > 0 && !(n->starts[n->end - 1] | n->depths[n->end - 1] | n->falls[n->end - 1]);)
+    n->end--;
   return 1;
 }
 
@@ -81,7 +83,7 @@ static uint64_t bits_taken(const lengths *n, delta_shape shape)
 {
   uint32_t most = most_added(shape), fall_bits = shape.bits - shape.depth_bits;
   uint64_t records = 0;
-  for (uint32_t length = 0; length < LENGTHS; length++) {
+  for (uint32_t length = 0; length < n->end; length++) {
     uint32_t deeper = length > shape.depth_bits, darker = length > fall_bits;
     if (n->starts[length] && length > 2 * shape.bits - 1)
       return UINT64_MAX;
@@ -101,7 +103,7 @@ static delta_shape best_shape(const lengths *n)
 {
   delta_shape best = {0, 0};
   uint64_t least = UINT64_MAX, numbers = 0;
-  for (uint32_t length = 0; length < LENGTHS; length++)
+  for (uint32_t length = 0; length < n->end; length++)
     numbers += (uint64_t)n->starts[length] + n->depths[length];
   for (uint32_t bits = LEAST_DELTA_BITS; bits <= MOST_DELTA_BITS && numbers * bits < least; bits++)
     for (uint32_t depth_bits = LEAST_DEEPER_BITS; depth_bits + LEAST_FALL_BITS <= bits; depth_bits++) {
