@@ -14,6 +14,20 @@ void bundle_begin(bundle *b, int level) {
   b->start = b->end = -HUGE_VAL;
 }
 
+void bundle_begin_at(bundle *b, double z, double low, double high) {
+  point bottom = {z, low}, top = {z, high};
+  bundle_begin(b, 0);
+  b->start = b->end = z;
+  if (high < HUGE_VAL) {
+    b->rise.support = top;
+    b->roof.points[b->roof.end++] = top;
+  }
+  if (low > -HUGE_VAL) {
+    b->fall.support = bottom;
+    b->floor.points[b->floor.end++] = bottom;
+  }
+}
+
 /* Below, `side` is 1 for the rise, the floor and all that is seen from above, and -1 for their mirror images. */
 
 /* Turns a line inwards, to pass p; `chain` is what supports it on the left. */
@@ -42,11 +56,10 @@ static inline void push(chain *chain, point p, int side) {
   chain->points[chain->end++] = p;
 }
 
-int bundle_narrow(bundle *b, double z, double low, double high) {
-  double most = line_at(&b->rise.line, z), least = line_at(&b->fall.line, z);
-  if (low > most || high < least) return 0;
+int bundle_narrow(bundle *b, double z, double low, double high, double fall, double rise) {
+  if (low > rise || high < fall) return 0;
   point bottom = {z, low}, top = {z, high};
-  int lowers = high < most, raises = low > least;
+  int lowers = high < rise, raises = low > fall;
   if (lowers) turn(&b->rise, &b->floor, top, 1, b->level);
   if (raises) turn(&b->fall, &b->roof, bottom, -1, b->level);
   /* An end that touches no line now touches none later. */

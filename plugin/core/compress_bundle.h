@@ -42,16 +42,20 @@ typedef struct {
 } bundle;
 
 void bundle_begin(bundle *b, int level);
+/* With a first gate that any line of the bundle passes. */
+void bundle_begin_at(bundle *b, double z, double low, double high);
 
 /* Adds a gate, not left of the one before; an end may be infinite. 0: no line passes, and nothing changed. */
 static inline int bundle_pass(bundle *b, double z, double low, double high);
 
-int bundle_narrow(bundle *b, double z, double low, double high);   /* where one of the two lines does not pass */
+/* Where one of the two lines does not pass: at z they are this high. */
+int bundle_narrow(bundle *b, double z, double low, double high, double fall, double rise);
 
 static inline int bundle_pass(bundle *b, double z, double low, double high) {
+  double fall = line_at(&b->fall.line, z), rise = line_at(&b->rise.line, z);
   b->end = z;
-  if (low <= line_at(&b->fall.line, z) && line_at(&b->rise.line, z) <= high) return 1;
-  return bundle_narrow(b, z, low, high);
+  if (low <= fall && rise <= high) return 1;
+  return bundle_narrow(b, z, low, high, fall, rise);
 }
 
 /* How high the lines of one slope are at depth z. */

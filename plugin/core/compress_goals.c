@@ -28,15 +28,15 @@ static chord cut(search *s, size_t k, gate g, double least) {
 /* The bundle of all lines through the goal, up to its far end, which lies between places k and k + 1. */
 static int begin_at_goal(search *s, const chord *goal, size_t k, double least) {
   const tunnel *t = &s->tunnel;
-  bundle_begin(&s->lines, 0);
-  if (!pass_near(&s->lines, goal, -1)) return 0;
+  gate near = gate_near(goal), far = gate_far(goal);
+  bundle_begin_at(&s->lines, -goal->near.z, near.low, near.high);
   size_t i = k;
   while (i + 1 < t->count && t->places[i + 1].z < goal->near.z) ++i;
   for (; i > k; --i) {
     gate g = only(goal->side, tunnel_gate(t, i, BEFORE | AFTER, 2 * s->margin, least));
     if (!bundle_pass(&s->lines, -t->places[i].z, g.low, g.high)) return 0;
   }
-  return pass_far(&s->lines, goal, -1);
+  return bundle_pass(&s->lines, -goal->far.z, far.low, far.high);
 }
 
 static gate gate_back(const search *s, size_t k, int sides, double least) {

@@ -39,16 +39,9 @@ static inline gate only(int side, gate g) {
   return g;
 }
 
-/* Lead the bundle past an end of a chord; `mirror` is -1 in bundles that run backwards. */
-static inline int pass_near(bundle *b, const chord *c, double mirror) {
-  gate g = only(c->side, (gate){c->near.y, c->near.y});
-  return bundle_pass(b, mirror * c->near.z, g.low, g.high);
-}
-
-static inline int pass_far(bundle *b, const chord *c, double mirror) {
-  gate g = only(-c->side, (gate){c->far.y, c->far.y});
-  return bundle_pass(b, mirror * c->far.z, g.low, g.high);
-}
+/* What lines that cross a chord pass at its ends. */
+static inline gate gate_near(const chord *c) { return only(c->side, (gate){c->near.y, c->near.y}); }
+static inline gate gate_far(const chord *c) { return only(-c->side, (gate){c->far.y, c->far.y}); }
 
 /* A line so steep that a rounded depth shifts its value by more than the margin allows. */
 static inline void doubt_steep(search *s, const line *l, double z) {

@@ -87,24 +87,23 @@ static size_t look_ahead(job *j, const piece *p, const origin *o, target *to) {
   const place *places = j->search.tunnel.places;
   const chord *from = &o->from, *crossed = to->beyond ? NULL : to->goal;
   /* The ends of chords to pass, by depth; a goal that begins in front of the origin is crossed from there. */
-  struct { const chord *chord; int (*pass)(bundle *, const chord *, double); double z; } ends[3];
+  struct { double z; gate gate; } ends[3];
   int count = 0, next = 0;
-  if (from->side != WALL) ends[count++].chord = from, ends[0].pass = pass_far, ends[0].z = from->far.z;
+  if (from->side != WALL) ends[count].z = from->far.z, ends[count++].gate = gate_far(from);
   if (crossed && crossed->far.z > from->near.z) {
     int i = count++;
     if (i && crossed->far.z < ends[0].z) ends[1] = ends[0], i = 0;
-    ends[i].chord = crossed, ends[i].pass = pass_far, ends[i].z = crossed->far.z;
+    ends[i].z = crossed->far.z, ends[i].gate = gate_far(crossed);
   }
-  if (to->goal) ends[count].chord = to->goal, ends[count].pass = pass_near, ends[count++].z = to->goal->near.z;
+  if (to->goal) ends[count].z = to->goal->near.z, ends[count++].gate = gate_near(to->goal);
 
-  bundle_begin(&j->search.lines, 0);
-  if (from->side == WALL) bundle_pass(&j->search.lines, from->near.z, from->near.y, from->near.y);
-  else pass_near(&j->search.lines, from, 1);
+  gate begin = from->side == WALL ? (gate){from->near.y, from->near.y} : gate_near(from);
+  bundle_begin_at(&j->search.lines, from->near.z, begin.low, begin.high);
   to->passed = ALL;
   for (size_t k = o->place;; ++k) {
     double z = k <= to->stop ? places[k].z : HUGE_VAL;
     for (; next < count && ends[next].z <= z; ++next)
-      if (!ends[next].pass(&j->search.lines, ends[next].chord, 1)) return k;
+      if (!bundle_pass(&j->search.lines, ends[next].z, ends[next].gate.low, ends[next].gate.high)) return k;
     if (k > to->stop || (crossed && next == count)) return ALL;
     gate g = gate_ahead(j, p, k);
     if (z < from->far.z) g = only(from->side, g);   /* not behind a wall, which has no extent */

@@ -70,18 +70,12 @@ double tunnel_steepness(const tunnel *t) {
   return most;
 }
 
-/* The output in front of z and behind it; `i` is its first vertex at or behind z. */
+/* The output in front of z; `i` is its first vertex at or behind z. */
 static double front(const vertex *out, size_t count, size_t i, double z) {
   if (i == 0) return 1;
   const vertex *a = &out[i - 1], *b = a + 1;
   if (i == count) return a->v.c[0];
   return b->z == z ? b->v.c[0] : a->v.c[0] + (b->v.c[0] - a->v.c[0]) * ((z - a->z) / (b->z - a->z));
-}
-
-static double behind(const vertex *out, size_t count, size_t i, double z) {
-  double v = front(out, count, i, z);
-  for (; i < count && out[i].z == z; ++i) v = out[i].v.c[0];
-  return v;
 }
 
 int tunnel_holds(const tunnel *t, const vertex *out, size_t count) {
@@ -92,12 +86,12 @@ int tunnel_holds(const tunnel *t, const vertex *out, size_t count) {
     for (; i < count && out[i].z < p->z; ++i) {
       if (i && !(out[i].z >= out[i - 1].z)) return 0;
       if (i && out[i].z == out[i - 1].z && !(k && out[i].z == p[-1].z && tunnel_steps(t, k - 1))) return 0;
-      if (k && fabs(out[i].v.c[0] - mix(out[i].z, p - 1, p)) > most && out[i].z > p[-1].z) return 0;
+      if (k && out[i].z > p[-1].z && fabs(out[i].v.c[0] - mix(out[i].z, p - 1, p)) > most) return 0;
     }
-    double a = front(out, count, i, p->z), b = behind(out, count, i, p->z);
-    if (fabs(a - p->before) > most || fabs(b - p->after) > most) return 0;
+    double before = front(out, count, i, p->z), after = before;
     size_t here = 0;
-    while (i + here < count && out[i + here].z == p->z) ++here;
+    for (; i + here < count && out[i + here].z == p->z; ++here) after = out[i + here].v.c[0];
+    if (fabs(before - p->before) > most || fabs(after - p->after) > most) return 0;
     if (here > 1 + (size_t)tunnel_steps(t, k)) return 0;
   }
   return 1;

@@ -14,23 +14,23 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/extremes.h"
 #include "core/vertices.h"
 
 /* LV 4: half of the worst noise that this many rays can have. */
 static inline double noise_ceiling(double rays) { return 0.25 / sqrt(rays); }
 
 /* What the disagreement of a pixel's rays allows: half the standard error, but at least what one of the
- * disagreeing rays adds, as that ray's own step lies where chance put it; at most noise_ceiling. `squares` is
+ * disagreeing rays adds, as that ray's own step lies where chance put it; at most `ceiling`, which is noise_ceiling(rays). `squares` is
  * the sum of the squared differences of neighbours, `pairs` how many neighbours differ. */
-static inline double noise_allowed(double squares, double pairs, double rays)
+static inline double noise_allowed(double squares, double pairs, double rays, double ceiling)
 {
   if (!(squares > 0))
     return 0;
   /* Every disagreeing ray has two neighbours. From four such rays on, half the error is more than one ray's
    * step; the hundredth lets that step itself pass. */
-  double share = pairs > 8 ? 0.5 : 1.01 / sqrt(fmax(1, pairs / 2));
-  double error = share * sqrt(squares / (2 * rays * (rays - 1))), most = noise_ceiling(rays);
-  return error < most ? error : most;
+  double share = pairs > 8 ? 0.5 : 1.01 / sqrt(greater(1, pairs / 2));
+  return lesser(ceiling, share * sqrt(squares / (2 * rays * (rays - 1))));
 }
 
 /* The variance of the mean itself. */

@@ -6,10 +6,9 @@
 
 #include "core/hash.h"
 
-static uint32_t reverse_bits(uint32_t x)
+static inline uint32_t reverse_bits(uint32_t x)
 {
-  x = (x >> 16) | (x << 16);
-  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+  x = __builtin_bswap32(x);
   x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
   x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
   return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);

@@ -3,25 +3,27 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
-dsm_result vertices_push(vertices *list, double z, rgb v) {
-  if (list->count == list->capacity) {
-    /* Rays have a handful of vertices or hundreds, hence half as much again from a small start. */
-    size_t capacity = list->capacity + list->capacity / 2 + 16;
-    if (capacity < list->capacity || capacity > SIZE_MAX / sizeof(vertex)) return DSM_NO_MEMORY;
-    vertex *data = realloc(list->data, capacity * sizeof(vertex));
-    if (!data) return DSM_NO_MEMORY;
-    list->data = data;
-    list->capacity = capacity;
-  }
-  list->data[list->count++] = (vertex){z, v};
+dsm_result vertices_reserve(vertices *list, size_t more) {
+  if (more <= list->capacity - list->count) return DSM_OK;
+  /* Rays have a handful of vertices or hundreds, hence half as much again from a small start. */
+  size_t capacity = list->capacity + list->capacity / 2 + 16, most = SIZE_MAX / sizeof(vertex);
+  if (more > most - list->count || capacity > most) return DSM_NO_MEMORY;
+  if (capacity < list->count + more) capacity = list->count + more;
+  vertex *data = realloc(list->data, capacity * sizeof(vertex));
+  if (!data) return DSM_NO_MEMORY;
+  list->data = data;
+  list->capacity = capacity;
   return DSM_OK;
 }
 
 dsm_result vertices_append(vertices *list, const vertex *from, size_t count) {
-  dsm_result result = DSM_OK;
-  for (size_t i = 0; i < count && result == DSM_OK; ++i) result = vertices_push(list, from[i].z, from[i].v);
-  return result;
+  dsm_result result = vertices_reserve(list, count);
+  if (result != DSM_OK || count == 0) return result;
+  memcpy(list->data + list->count, from, count * sizeof(vertex));
+  list->count += count;
+  return DSM_OK;
 }
 
 void vertices_free(vertices *list) {

@@ -22,9 +22,17 @@ typedef struct {
   size_t count, capacity;
 } vertices;
 
+/* Room for so many more. DSM_NO_MEMORY leaves the list as it was. */
+dsm_result vertices_reserve(vertices *list, size_t more);
+
 /* Appends one vertex. DSM_NO_MEMORY leaves the list as it was. */
-dsm_result vertices_push(vertices *list, double z, rgb v);
-/* Appends those of another list. DSM_NO_MEMORY: some may have been. */
+static inline dsm_result vertices_push(vertices *list, double z, rgb v) {
+  if (list->count == list->capacity && vertices_reserve(list, 1) != DSM_OK) return DSM_NO_MEMORY;
+  list->data[list->count++] = (vertex){z, v};
+  return DSM_OK;
+}
+
+/* Appends those of another list, likewise. */
 dsm_result vertices_append(vertices *list, const vertex *from, size_t count);
 void vertices_free(vertices *list);   /* gives the memory back; the list is empty and may be used again */
 

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-/* Fewer bytes for exactly the same tile. */
+/* A coded tile in as few bytes as look-ups read fast. */
 #ifndef DSM_MAP_COMPACT_TILE_H
 #define DSM_MAP_COMPACT_TILE_H
 
-#include "map/tile.h"
+#include "map/delta_tile.h"
 
-/* The tile that tile_create has made, in the shortest records that hold exactly its depths and values: depths as multiples
- * of the largest power of two that divides all of them, if that takes no more than MOST_CODE_BITS; values in the fewest bits that
- * tell them. Takes `t`; gives it back if there is nothing to be won, or no memory for a moment. */
-tile *tile_compact(tile *t);
+/* Whether deltas tell the tile, and spare enough; if so, how. */
+int compact_as_deltas(const coded_tile *t, delta_plan *plan);
+
+/* A new tile of absolute records. NULL: out of memory, or more than 4 GB. */
+tile *absolute_tile(const coded_tile *t);
 
 #endif

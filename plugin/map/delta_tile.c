@@ -1,83 +1,70 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 #include "map/delta_tile.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Look-ups are slow where records are no vertices, so such a record is as bad as this many. */
 enum { ADDING_COSTS = 2 };
 
-enum { LENGTHS = 33 };   /* bits of a number: 0 to 32 */
+enum { LENGTHS = MOST_CODE_BITS + 2 };   /* bits of a number; of a depth, that of one more counts */
 
-typedef struct { uint32_t deeper, fall; } delta;
-
-/* A tile's pixels: their starts, and the deltas of all, one pixel's after the other's. */
-typedef struct {
-  uint32_t start[TILE_PIXELS], count[TILE_PIXELS];   /* count: of deltas; NONE: the pixel is empty */
-  delta *deltas;
-} tile_deltas;
-
-static const uint32_t NONE = UINT32_MAX;
-
-/* How many numbers have so many bits. */
-typedef struct { uint32_t starts[LENGTHS], depths[LENGTHS], falls[LENGTHS]; } lengths;
-
-/* Bits of a record, and those of them that are the depth's. */
-typedef struct { uint32_t bits, depth_bits; } delta_shape;
+/* How many numbers have so many bits; none has `end` or more. */
+typedef struct { uint32_t starts[LENGTHS], depths[LENGTHS], falls[LENGTHS], end; } lengths;
 
 static uint32_t length_of(uint32_t number)
 {
   return number ? 32 - (uint32_t)__builtin_clz(number) : 0;
 }
 
-/* Its deltas, behind `to`, exact, as the tile has been found to be told by these codes; NONE: it has none that tell it. */
-static uint32_t read_deltas(const visibility *v, const visibility_codes *codes, uint32_t *start, delta *to)
+/* A pixel's vertices that take records: all but a first one that is 1. What is in front of them is as deep as the first, and 1. */
+typedef struct {
+  const coded_vertex *next, *end;
+  uint32_t depth, value;
+} pixel_walk;
+
+static inline pixel_walk begin(const coded_vertex *v, uint32_t count, uint32_t one)
 {
-  uint32_t most = codes->value_mask, depth = 0, value = most, n = 0;
-  for (uint32_t i = 0; i < v->count; i++) {
-    uint32_t next = (uint32_t)(visibility_depth(v, i) * codes->per_quantum), code = code_of_value(visibility_stored(v, i, 0), most);
-    if (i == 0)
-      *start = depth = next;
-    if (next < depth || code > value || (i == 1 && n == 0 && next == depth))
-      return NONE;
-    if (i > 0 || code < most)
-      to[n++] = (delta){next - depth, value - code};
-    depth = next;
-    value = code;
-  }
-  return n;
+  return (pixel_walk){v + (v->value[0] == one), v + count, v->depth, one};
 }
 
-static int read_tile(const tile *t, const visibility_codes *codes, tile_deltas *out)
+typedef struct { uint32_t deeper, fall; } delta;
+
+static inline delta step(pixel_walk *w)
 {
-  delta *to = out->deltas;
-  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
-    visibility v = tile_visibility(t, i);
-    out->count[i] = NONE;
-    if (v.count == 0)
-      continue;
-    out->count[i] = read_deltas(&v, codes, &out->start[i], to);
-    if (out->count[i] == NONE)
+  const coded_vertex *v = w->next++;
+  delta d = {v->depth - w->depth, w->value - v->value[0]};
+  w->depth = v->depth;
+  w->value = v->value[0];
+  return d;
+}
+
+/* 0: no deltas tell the pixel. */
+static int measure_pixel(const coded_vertex *v, uint32_t count, uint32_t one, lengths *n)
+{
+  pixel_walk w = begin(v, count, one);
+  int begins_twice = w.next > v && w.next < w.end && w.next->depth == w.depth;
+  n->starts[length_of(w.depth)]++;
+  while (w.next < w.end) {
+    if (w.next->depth < w.depth || w.next->value[0] > w.value)
       return 0;
-    to += out->count[i];
+    delta d = step(&w);
+    n->depths[length_of(d.deeper + 1)]++;
+    n->falls[length_of(d.fall)]++;
   }
-  return 1;
+  return !begins_twice;
 }
 
-static lengths lengths_of(const tile_deltas *all)
+static int measure(const coded_tile *t, lengths *n)
 {
-  lengths n = {{0}, {0}, {0}};
-  const delta *d = all->deltas;
-  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
-    if (all->count[i] == NONE)
-      continue;
-    n.starts[length_of(all->start[i])]++;
-    for (uint32_t k = 0; k < all->count[i]; k++, d++) {
-      n.depths[length_of(d->deeper + 1)]++;
-      n.falls[length_of(d->fall)]++;
-    }
-  }
-  return n;
+  const coded_vertex *v = t->vertices;
+  uint32_t one = (1u << t->value_bits) - 1;
+  memset(n, 0, sizeof *n);
+  for (uint32_t i = 0; i < TILE_PIXELS; v += t->plan.count[i++])
+    if (t->plan.coloured[i] || (t->plan.count[i] && !measure_pixel(v, t->plan.count[i], one, n)))
+      return 0;
+  for (n->end = LENGTHS; n->end > 0 && !(n->starts[n->end - 1] | n->depths[n->end - 1] | n->falls[n->end - 1]);)
+    n->end--;
+  return 1;
 }
 
 /* What is left for the number in a record that only adds. */
@@ -96,7 +83,7 @@ static uint64_t bits_taken(const lengths *n, delta_shape shape)
 {
   uint32_t most = most_added(shape), fall_bits = shape.bits - shape.depth_bits;
   uint64_t records = 0;
-  for (uint32_t length = 0; length < LENGTHS; length++) {
+  for (uint32_t length = 0; length < n->end; length++) {
     uint32_t deeper = length > shape.depth_bits, darker = length > fall_bits;
     if (n->starts[length] && length > 2 * shape.bits - 1)
       return UINT64_MAX;
@@ -111,11 +98,14 @@ static uint64_t bits_taken(const lengths *n, delta_shape shape)
   return records * shape.bits;
 }
 
+/* Longer records are not better once a record for each number takes as much as the best so far. */
 static delta_shape best_shape(const lengths *n)
 {
   delta_shape best = {0, 0};
-  uint64_t least = UINT64_MAX;
-  for (uint32_t bits = LEAST_DELTA_BITS; bits <= MOST_DELTA_BITS; bits++)
+  uint64_t least = UINT64_MAX, numbers = 0;
+  for (uint32_t length = 0; length < n->end; length++)
+    numbers += (uint64_t)n->starts[length] + n->depths[length];
+  for (uint32_t bits = LEAST_DELTA_BITS; bits <= MOST_DELTA_BITS && numbers * bits < least; bits++)
     for (uint32_t depth_bits = LEAST_DEEPER_BITS; depth_bits + LEAST_FALL_BITS <= bits; depth_bits++) {
       uint64_t taken = bits_taken(n, (delta_shape){bits, depth_bits});
       if (taken < least) {
@@ -126,105 +116,97 @@ static delta_shape best_shape(const lengths *n)
   return best;
 }
 
-/* Where records go; NULL: they are only counted. */
-typedef struct {
-  unsigned char *bytes;
-  delta_shape shape;
-  uint32_t count;
-} record_sink;
-
-static void put(record_sink *s, uint32_t record)
+static uint32_t count_records(const coded_vertex *v, uint32_t count, uint32_t one, delta_shape shape)
 {
-  uint64_t at = (uint64_t)s->count++ * s->shape.bits, word = (uint64_t)record << at % 8;
-  for (unsigned char *byte = s->bytes ? s->bytes + at / 8 : NULL; byte && word; word >>= 8)
-    *byte++ |= (unsigned char)word;
+  pixel_walk w = begin(v, count, one);
+  uint32_t all = (1u << shape.depth_bits) - 1, fall_bits = shape.bits - shape.depth_bits, most = most_added(shape);
+  uint32_t records = 1 + (w.depth >> (shape.bits - 1) > 0) + (uint32_t)(w.end - w.next);
+  while (w.next < w.end) {
+    delta d = step(&w);
+    if (d.deeper >= all)
+      records += divided_up(d.deeper / all, most);
+    if (d.fall >> fall_bits)
+      records += divided_up(d.fall >> fall_bits, most);
+  }
+  return records;
+}
+
+int delta_tile_plan(const coded_tile *t, uint64_t most, delta_plan *plan)
+{
+  lengths n;
+  if (!(t->per_quantum > 0) || !measure(t, &n))
+    return 0;
+  delta_shape shape = best_shape(&n);
+  if (shape.bits == 0)
+    return 0;
+  const coded_vertex *v = t->vertices;
+  plan->shape = shape;
+  plan->records = t->plan;
+  for (uint32_t i = 0; i < TILE_PIXELS; v += t->plan.count[i++])
+    if (t->plan.count[i]) {
+      uint32_t records = count_records(v, t->plan.count[i], (1u << t->value_bits) - 1, shape);
+      if (records > MOST_DELTAS)
+        return 0;
+      plan->records.count[i] = records;
+    }
+  return tile_bytes(&plan->records, shape.bits, DELTA_PADDING) < most;
+}
+
+/* Where records go, bit by bit. */
+typedef struct {
+  unsigned char *to;
+  uint64_t word;       /* of which the lowest bits are not written for good yet: fewer than eight */
+  uint32_t held;
+  delta_shape shape;
+} record_writer;
+
+static inline void put(record_writer *w, uint32_t record)
+{
+  w->word |= (uint64_t)record << w->held;
+  w->held += w->shape.bits;
+  memcpy(w->to, &w->word, sizeof w->word);   /* at the end into the padding */
+  w->to += w->held / 8;
+  w->word >>= w->held / 8 * 8;
+  w->held %= 8;
 }
 
 /* Adds `units` to the depth (kind 0) or to the fall (1). */
-static void put_more(record_sink *s, uint32_t units, uint32_t kind)
+static void put_more(record_writer *w, uint32_t units, uint32_t kind)
 {
-  uint32_t all = (1u << s->shape.depth_bits) - 1, most = most_added(s->shape);
+  uint32_t all = (1u << w->shape.depth_bits) - 1, most = most_added(w->shape);
   for (; units > 0; units -= units < most ? units : most)
-    put(s, (units < most ? units : most) << (s->shape.depth_bits + 1) | kind << s->shape.depth_bits | all);
+    put(w, (units < most ? units : most) << (w->shape.depth_bits + 1) | kind << w->shape.depth_bits | all);
 }
 
-static void put_pixel(record_sink *s, uint32_t start, const delta *d, uint32_t count)
+static void put_pixel(record_writer *to, const coded_vertex *v, uint32_t count, uint32_t one)
 {
-  uint32_t bits = s->shape.bits, depth_bits = s->shape.depth_bits, all = (1u << depth_bits) - 1, fall_bits = bits - depth_bits;
-  uint32_t more = start >> (bits - 1);
-  put(s, (start << 1 & ((1u << bits) - 1)) | (more > 0));
+  pixel_walk w = begin(v, count, one);
+  uint32_t bits = to->shape.bits, depth_bits = to->shape.depth_bits, all = (1u << depth_bits) - 1, fall_bits = bits - depth_bits;
+  uint32_t more = w.depth >> (bits - 1);
+  put(to, (w.depth << 1 & ((1u << bits) - 1)) | (more > 0));
   if (more)
-    put(s, more);
-  for (uint32_t k = 0; k < count; k++) {
-    put_more(s, d[k].deeper / all, 0);
-    put_more(s, d[k].fall >> fall_bits, 1);
-    put(s, (d[k].fall & ((1u << fall_bits) - 1)) << depth_bits | d[k].deeper % all);
-  }
-}
-
-/* 0: a pixel is too long. */
-static int plan_tile(const tile *from, const tile_deltas *all, delta_shape shape, tile_plan *plan)
-{
-  const delta *d = all->deltas;
-  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
-    record_sink counted = {NULL, shape, 0};
-    plan->coloured[i] = 0;
-    plan->marked[i] = tile_is_marked(from, i) != 0;
-    plan->need[i] = (unsigned char)tile_need_at(from, i);
-    if (all->count[i] != NONE) {
-      put_pixel(&counted, all->start[i], d, all->count[i]);
-      d += all->count[i];
+    put(to, more);
+  while (w.next < w.end) {
+    delta d = step(&w);
+    if (d.deeper >= all) {
+      put_more(to, d.deeper / all, 0);
+      d.deeper %= all;
     }
-    plan->count[i] = counted.count;
-    if (counted.count > MOST_DELTAS)
-      return 0;
+    put_more(to, d.fall >> fall_bits, 1);
+    put(to, (d.fall & ((1u << fall_bits) - 1)) << depth_bits | d.deeper);
   }
-  return 1;
 }
 
-static tile *build(const tile *from, const visibility_codes *codes, const tile_deltas *all, size_t most)
+tile *delta_tile(const coded_tile *from, const delta_plan *plan)
 {
-  tile_plan plan;
-  lengths n = lengths_of(all);
-  delta_shape shape = best_shape(&n);
-  if (shape.bits == 0 || !plan_tile(from, all, shape, &plan))
+  tile *t = coded_tile_lay_out(from, &plan->records, plan->shape.bits, DELTA_PADDING);
+  if (!t)
     return NULL;
-  tile *t = tile_create_empty(&plan, shape.bits, DELTA_PADDING);
-  if (!t || t->size >= most) {
-    tile_destroy(t);
-    return NULL;
-  }
-  t->codes.per_quantum = codes->per_quantum;
-  codes_set_deltas(&t->codes, shape.bits, shape.depth_bits, codes->value_bits);
-  t->near_depth = from->near_depth;
-  t->tolerance = from->tolerance;
-  t->volume = from->volume;
-  record_sink s = {(unsigned char *)t + t->codes.records, shape, 0};
-  const delta *d = all->deltas;
-  for (uint32_t i = 0; i < TILE_PIXELS; i++)
-    if (all->count[i] != NONE) {
-      put_pixel(&s, all->start[i], d, all->count[i]);
-      d += all->count[i];
-    }
-  return t;
-}
-
-tile *delta_tile_of(const tile *from, const visibility_codes *codes, size_t most)
-{
-  size_t vertices = 1;
-  if (from->layout & TILE_COLOURED || !codes_are_whole(codes))
-    return NULL;
-  for (uint32_t i = 0; i < TILE_PIXELS; i++) {
-    uint32_t count = tile_visibility(from, i).count;
-    if (count > MOST_DELTAS)
-      return NULL;
-    vertices += count;
-  }
-  tile_deltas *all = malloc(sizeof *all + vertices * sizeof(delta));
-  if (!all)
-    return NULL;
-  all->deltas = (delta *)(all + 1);
-  tile *t = read_tile(from, codes, all) ? build(from, codes, all, most) : NULL;
-  free(all);
+  codes_set_deltas(&t->codes, plan->shape.bits, plan->shape.depth_bits, from->value_bits);
+  record_writer w = {(unsigned char *)t + t->codes.records, 0, 0, plan->shape};
+  const coded_vertex *v = from->vertices;
+  for (uint32_t i = 0; i < TILE_PIXELS; v += from->plan.count[i++])
+    if (from->plan.count[i])
+      put_pixel(&w, v, from->plan.count[i], (1u << from->value_bits) - 1);
   return t;
 }

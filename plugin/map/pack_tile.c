@@ -2,64 +2,10 @@
 #include "map/pack_tile.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "map/compact_tile.h"
-
-/* Where depths of a tile count from, and in what; quantum 0: in floats. */
-typedef struct { double near_depth, quantum; } depth_scale;
-
-static uint16_t rounded(double value, uint32_t bits)
-{
-  uint32_t most = (1u << bits) - 1, code = (uint32_t)(fmin(1, fmax(0, value)) * most + 0.5);
-  return (uint16_t)value_of_code(code, most);
-}
-
-static float rounded_depth(double z, const depth_scale *scale)
-{
-  double relative = z - scale->near_depth;
-  return (float)(scale->quantum > 0 ? ceil(relative / scale->quantum) * scale->quantum : relative);
-}
-
-static int is_one(const vertex *v, int channels, uint32_t value_bits)
-{
-  int ones = 0;
-  for (int c = 0; c < channels; c++)
-    ones += rounded(v->v.c[c], value_bits) == VALUE_STEPS;
-  return ones == channels;
-}
-
-/* Counts what is left of a pixel when only the first and last of vertices at one rounded depth stay, and puts
- * it into `t` if that is not NULL. Middle ones say nothing, as a step is two vertices; nor does 1 in front of the first step. */
-static size_t pack_pixel(const vertices *stored, const baked_pixel *p, const depth_scale *scale, uint32_t value_bits, tile *t,
-                         uint32_t place)
-{
-  const vertex *v = stored->data + p->first;
-  int channels = p->coloured ? 3 : 1, only_one = 0;
-  size_t n = 0;
-  float last = 0, before = 0;   /* the depths of the last two kept */
-  for (size_t i = 0; i < p->count; i++) {
-    float z = rounded_depth(v[i].z, scale);
-    if (n < 2 ? !(only_one && z == last) : z != last || z != before)
-      n++;
-    before = n > 1 ? last : z;
-    last = z;
-    only_one = n == 1 && is_one(&v[i], channels, value_bits);
-    for (uint32_t c = 0; t && c < (uint32_t)channels; c++)
-      tile_put(t, place, (uint32_t)n - 1, c, z, rounded(v[i].v.c[c], value_bits));
-  }
-  return n;
-}
-
-static int stays_coloured(const vertices *stored, const baked_pixel *p, uint32_t value_bits)
-{
-  for (size_t i = p->first; i < p->first + p->count; i++) {
-    const double *c = stored->data[i].v.c;
-    uint16_t red = rounded(c[0], value_bits);
-    if (red != rounded(c[1], value_bits) || red != rounded(c[2], value_bits))
-      return 1;
-  }
-  return 0;
-}
+#include "map/round_tile.h"
 
 /* Root mean square over the pixels that store anything. */
 static float tolerance_of(const baked_pixel pixels[TILE_PIXELS])
@@ -121,74 +67,60 @@ static void ends_of(const baked_pixel pixels[TILE_PIXELS], const vertices *store
     }
 }
 
-/* A new compact tile whose depths have this scale; NULL: no memory. */
-static tile *pack_at(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const depth_scale *scale, uint32_t value_bits,
-                     tile_plan *plan)
-{
-  int volume = 0;
-  for (int i = 0; i < TILE_PIXELS; i++) {
-    const baked_pixel *p = &pixels[i];
-    size_t kept = p->count ? pack_pixel(stored, p, scale, value_bits, NULL, 0) : 0;
-    if (kept > UINT32_MAX)
-      return NULL;
-    plan->count[i] = (uint32_t)kept;
-    volume |= p->volume;
-  }
-  tile *t = tile_create(plan);
-  if (!t)
-    return NULL;
-  if (scale->near_depth < INFINITY) {
-    t->near_depth = scale->near_depth;
-    t->tolerance = tolerance_of(pixels);
-  }
-  t->volume = volume != 0;
-  for (uint32_t i = 0; i < TILE_PIXELS; i++)
-    if (pixels[i].count)
-      pack_pixel(stored, &pixels[i], scale, value_bits, t, i);
-  return tile_compact(t);
-}
-
 /* With the largest quantum if that makes it a tile of deltas; in absolute records, finer ones cost nothing. Where values are told as well
  * as can be, as a tolerance is asked for that is finer than the rays tell, depths are, too, as far as that costs nothing. */
-static tile *pack_best(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, tile_plan *plan)
+static tile *pack_best(const baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, coded_tile *coded)
 {
   depth_scale scale = {INFINITY, 0};
-  double far_depth, most, least;
+  double far_depth, most = 0, least = 0;
+  delta_plan deltas;
   ends_of(pixels, stored, &scale.near_depth, &far_depth);
-  if (!(rule->quantum > 0 && scale.near_depth < INFINITY))
-    return pack_at(pixels, stored, &scale, rule->value_bits, plan);
-  most = most_of(pixels, stored, rule, scale.near_depth);
-  least = least_quantum(most, rule->value_bits, far_depth - scale.near_depth);
+  if (rule->quantum > 0 && scale.near_depth < INFINITY) {
+    most = most_of(pixels, stored, rule, scale.near_depth);
+    least = least_quantum(most, rule->value_bits, far_depth - scale.near_depth);
+  }
   scale.quantum = most > 0 && rule->value_bits < VALUE_BITS ? ldexp(1, ilogb(most)) : least;
-  tile *t = pack_at(pixels, stored, &scale, rule->value_bits, plan);
-  if (!t || scale.quantum == least || codes_are_deltas(&t->codes))
-    return t;
-  tile_destroy(t);
-  scale.quantum = least;
-  return pack_at(pixels, stored, &scale, rule->value_bits, plan);
+  if (scale.near_depth < INFINITY) {
+    coded->near_depth = scale.near_depth;
+    coded->tolerance = tolerance_of(pixels);
+  }
+  for (;; scale.quantum = least) {
+    round_tile(pixels, stored, &scale, rule->value_bits, coded);
+    coded_tile_shorten(coded);
+    if (compact_as_deltas(coded, &deltas))
+      return delta_tile(coded, &deltas);
+    if (scale.quantum == least)
+      return absolute_tile(coded);
+  }
 }
 
 dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, const tile **out)
 {
-  tile_plan plan;
-  int stored_or_marked = 0;
+  coded_tile coded = {.count = 0};
+  size_t room = 0;
+  int marked = 0;
   *out = NULL;
   for (int i = 0; i < TILE_PIXELS; i++) {
-    baked_pixel *p = &pixels[i];
-    p->coloured = p->coloured && stays_coloured(stored, p, rule->value_bits);
-    plan.coloured[i] = p->coloured != 0;
-    plan.marked[i] = p->marked || p->absent;
-    plan.need[i] = p->need;
-    stored_or_marked |= p->count || plan.marked[i];
+    const baked_pixel *p = &pixels[i];
+    coded.plan.marked[i] = p->marked || p->absent;
+    coded.plan.need[i] = p->need;
+    coded.volume |= p->volume != 0;
+    marked |= coded.plan.marked[i];
+    room += p->count;
   }
-  if (!stored_or_marked) {
+  if (!room && !marked) {
     *out = &tile_lit;
     return DSM_OK;
   }
-  *out = pack_best(pixels, stored, rule, &plan);
+  coded.vertices = room < UINT32_MAX ? malloc((room + 1) * sizeof *coded.vertices) : NULL;
+  if (coded.vertices)
+    *out = pack_best(pixels, stored, rule, &coded);
+  free(coded.vertices);
   if (!*out)
     return DSM_NO_MEMORY;
-  for (int i = 0; i < TILE_PIXELS; i++)
-    pixels[i].count = plan.count[i];
+  for (int i = 0; i < TILE_PIXELS; i++) {
+    pixels[i].count = coded.plan.count[i];
+    pixels[i].coloured = coded.plan.coloured[i];
+  }
   return DSM_OK;
 }

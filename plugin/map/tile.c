@@ -70,19 +70,37 @@ static void fill_table(tile *t, const tile_plan *plan)
     wide[TILE_PIXELS] = first;
 }
 
-tile *tile_create_empty(const tile_plan *plan, uint32_t record_bits, uint32_t padding)
+static size_t bytes_of_table(uint8_t layout)
+{
+  return layout & TILE_WIDE ? (TILE_PIXELS + 1) * sizeof(uint32_t) : TILE_PIXELS / 8 * sizeof(uint16_t) + TILE_PIXELS;
+}
+
+static size_t bytes_before_records(uint8_t layout)
+{
+  return sizeof(tile) + bytes_of_table(layout) + (layout & TILE_COLOURED ? BITS : 0) + (layout & TILE_MARKED ? BITS : 0);
+}
+
+static uint64_t bytes_as(const tile_plan *plan, uint8_t layout, uint32_t record_bits, uint32_t padding)
 {
   uint64_t records = 0;
   for (int i = 0; i < TILE_PIXELS; i++)
     records += records_of(plan, i);
+  return bytes_before_records(layout) + (record_bits * records + 7) / 8 + padding + (layout & TILE_REFINED ? TILE_PIXELS : 0);
+}
+
+uint64_t tile_bytes(const tile_plan *plan, uint32_t record_bits, uint32_t padding)
+{
+  return bytes_as(plan, layout_of(plan), record_bits, padding);
+}
+
+tile *tile_create_empty(const tile_plan *plan, uint32_t record_bits, uint32_t padding)
+{
   uint8_t layout = layout_of(plan);
-  size_t table = layout & TILE_WIDE ? (TILE_PIXELS + 1) * sizeof(uint32_t) : TILE_PIXELS / 8 * sizeof(uint16_t) + TILE_PIXELS;
-  size_t data = sizeof(tile) + table + (layout & TILE_COLOURED ? BITS : 0) + (layout & TILE_MARKED ? BITS : 0);
-  uint64_t size = data + (record_bits * records + 7) / 8 + padding + (layout & TILE_REFINED ? TILE_PIXELS : 0);
+  size_t data = bytes_before_records(layout);
+  uint64_t size = bytes_as(plan, layout, record_bits, padding);
   tile *t = size <= UINT32_MAX ? calloc(1, size) : NULL;
   if (!t)
     return NULL;
-  codes_set(&t->codes, MOST_RECORD_BITS, VALUE_BITS);
   t->codes.records = (uint16_t)data;
   t->size = (uint32_t)size;
   t->kind = TILE_STORED;
@@ -95,30 +113,6 @@ tile *tile_create_empty(const tile_plan *plan, uint32_t record_bits, uint32_t pa
     memcpy((char *)t + size - TILE_PIXELS, plan->need, TILE_PIXELS);
   fill_table(t, plan);
   return t;
-}
-
-tile *tile_create(const tile_plan *plan)
-{
-  return tile_create_empty(plan, MOST_RECORD_BITS, 0);
-}
-
-void tile_put_record(tile *t, size_t index, uint64_t record)
-{
-  uint32_t bytes = t->codes.record_bits / 8;
-  memcpy((unsigned char *)t + t->codes.records + index * bytes, &record, bytes);
-}
-
-void tile_put(tile *t, uint32_t place, uint32_t vertex, uint32_t channel, float depth, uint16_t value)
-{
-  visibility v = tile_visibility(t, place);
-  union { float value; uint32_t bits; } f = {depth};
-  size_t first = tile_first(t, place), second = first + v.count + vertex;
-  if (channel == 0) {
-    tile_put_record(t, first + vertex, (uint64_t)f.bits << VALUE_BITS | value);
-    return;
-  }
-  uint64_t third = visibility_code(&v, vertex, 2), other = visibility_code(&v, vertex, 1);
-  tile_put_record(t, second, channel == 1 ? third << VALUE_BITS | value : (uint64_t)value << VALUE_BITS | other);
 }
 
 void tile_destroy(const tile *t)

@@ -81,16 +81,12 @@ typedef struct {
 /* Shared by all tiles without a caster, and by all that could not be baked. */
 extern const tile tile_lit, tile_failed;
 
-/* A tile laid out as planned, of floats and values of 16 bits, all zero, to be filled by tile_put and made compact before
- * anybody else sees it. NULL: out of memory, or more than 4 GB. */
-tile *tile_create(const tile_plan *plan);
-/* One channel of a vertex, in a tile that is not compact. Grey pixels have channel 0 alone. */
-void tile_put(tile *t, uint32_t place, uint32_t vertex, uint32_t channel, float depth, uint16_t value);
-/* The same with records of so many bits, and bytes behind them, for who fills them himself. */
+/* Bytes of a tile with records of so many bits, and bytes behind them. */
+uint64_t tile_bytes(const tile_plan *plan, uint32_t record_bits, uint32_t padding);
+/* Such a tile, to be filled before anybody else sees it: its records are zeros, and how they are to be read is not said yet but for where they
+ * begin. NULL: out of memory, or more than 4 GB. */
 tile *tile_create_empty(const tile_plan *plan, uint32_t record_bits, uint32_t padding);
 void tile_destroy(const tile *t);   /* the shared ones may be passed too */
-
-void tile_put_record(tile *t, size_t index, uint64_t record);
 
 /* The first of the 16-bit numbers, and of the bytes, of the narrow table. */
 static inline const uint16_t *tile_starts(const tile *t)

@@ -10,6 +10,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "plain_tile.h"
 #include "store/map_file.h"
 #include "tool/command.h"
 

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#include "map/compact_tile.h"
+#include "plain_tile.h"
 #include "random.h"
 
 /* A tile twice: as it was made, and compact. */

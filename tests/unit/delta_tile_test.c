@@ -24,24 +24,21 @@ typedef struct {
 } pixels;
 
 static void make(pixels *p) {
-  tile_plan plan;
-  visibility_codes codes = {.per_quantum = 1 / p->quantum};
-  codes_set(&codes, 32, p->value_bits);
-  memcpy(plan.count, p->count, sizeof plan.count);
-  memcpy(plan.coloured, p->coloured, sizeof plan.coloured);
-  memcpy(plan.marked, p->marked, sizeof plan.marked);
-  memcpy(plan.need, p->need, sizeof plan.need);
-  tile *t = tile_create(&plan);
-  assert_non_null(t);
-  t->near_depth = 7.5;
-  t->tolerance = 0.25f;
-  t->volume = 1;
+  coded_tile t = {.per_quantum = 1 / p->quantum, .depth_bits = MOST_CODE_BITS, .value_bits = p->value_bits,
+                  .near_depth = 7.5, .tolerance = 0.25f, .volume = 1};
+  memcpy(t.plan.count, p->count, sizeof t.plan.count);
+  memcpy(t.plan.coloured, p->coloured, sizeof t.plan.coloured);
+  memcpy(t.plan.marked, p->marked, sizeof t.plan.marked);
+  memcpy(t.plan.need, p->need, sizeof t.plan.need);
+  t.vertices = malloc(TILE_PIXELS * MOST * sizeof *t.vertices);
   for (uint32_t i = 0; i < TILE_PIXELS; ++i)
-    for (uint32_t k = 0; k < p->count[i]; ++k)
-      for (uint32_t c = 0; c < (p->coloured[i] ? 3u : 1u); ++c)
-        tile_put(t, i, k, c, (float)(p->depth[i][k] * p->quantum), (uint16_t)value_of_code(p->value[i][k], codes.value_mask));
-  p->deltas = delta_tile_of(t, &codes, SIZE_MAX);
-  tile_destroy(t);
+    for (uint32_t k = 0; k < p->count[i]; ++k) {
+      uint16_t value = (uint16_t)p->value[i][k];
+      t.vertices[t.count++] = (coded_vertex){p->depth[i][k], {value, value, value}};
+    }
+  delta_plan plan;
+  p->deltas = delta_tile_plan(&t, UINT64_MAX, &plan) ? delta_tile(&t, &plan) : NULL;
+  free(t.vertices);
 }
 
 /* A number of so many bits or fewer, every length alike. */

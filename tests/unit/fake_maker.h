@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "map/worker.h"
+#include "plain_tile.h"
 #include "random.h"
 
 enum { SIDE = 4, FINEST = SIDE * SIDE, ALL = 16 + 4 + 1 + 4 };   /* tiles across and up; of level 0; of levels down to one pixel */

@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "core/vertices.h"
-#include "map/compact_tile.h"
 #include "map/read_tile.h"
 #include "map/tile_words.h"
+#include "plain_tile.h"
 #include "random.h"
 
 static inline int same_tiles(const tile *a, const tile *b) {

@@ -109,7 +109,7 @@ static void noise_direct(const average_input *in, const vertices *mean, double *
     pair += pairs[i];
     if (pair < 0.5)   /* whole numbers, and exact; the squares have rounded */
       square = 0;
-    allowed[i] = noise_allowed(square, pair, in->count);
+    allowed[i] = noise_allowed(square, pair, in->count, noise_ceiling(in->count));
   }
   free(squares);
   free(pairs);

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "map/spool.h"
+#include "plain_tile.h"
 #include "random.h"
 
 enum { COUNT = 500 };

@@ -19,6 +19,7 @@ static void stumble(void) {
 #define atomic_store(where, what) (stumble(), atomic_store_explicit(where, what, memory_order_seq_cst))
 
 #include "map/tile_store.h"
+#include "plain_tile.h"
 #include "random.h"
 
 static const tile_plan ONE_VERTEX = {.count = {1}};

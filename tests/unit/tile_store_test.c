@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "map/tile_store.h"
+#include "plain_tile.h"
 #include "random.h"
 
 static projection two_faces(void) {

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "map/tile.h"
+#include "plain_tile.h"
 #include "random.h"
 
 typedef struct { tile_plan plan; uint64_t records; int coloured, marked; } planned;
