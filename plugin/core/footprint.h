@@ -60,6 +60,15 @@ footprint footprint_in_rows(footprint f);
 /* How many times the area the pixels that are read may have where the error aimed at is so large, 0 < accuracy < 0.5. */
 double footprint_coarser(double accuracy);
 
+/* Whether what a region asks for may be read so far away from it, pixels of the finest level. Costs next to nothing, and says so too often:
+ *
+ *   a footprint's pixels   1.5 * 2^(level + 1) or (1.5 + 1.3 + 0.9) * 2^level with its rows, and 4^level <= 1 + 4 * (xx + yy)
+ *   its probes             half of sqrt(12 * (xx + yy)) */
+static inline int footprint_may_reach(const spread *region, double distance)
+{
+  return !(distance > 0 && distance * distance > 28 + 170 * (region->xx + region->yy));   /* true for NaN */
+}
+
 /* Pixels of the finest level beyond which a footprint with these limits reads nothing. */
 static inline double footprint_reach(uint32_t most, int stretched)
 {

@@ -55,7 +55,16 @@ static dsm_result add_footprint(view *v, const footprint *f)
   return result == DSM_OK && f->coarser > 0 ? add_level(v, f, f->level + 1, v->at->weight * f->coarser) : result;
 }
 
-/* What the receiver and the map's blur ask for on this face. */
+/* How far outside the face the point lies, pixels; less than 0: inside. */
+static double distance_beside(const view *v)
+{
+  const face *f = &v->worker->map->projection.faces[v->at->face];
+  double x = v->at->x, y = v->at->y, left = -x, low = -y;
+  double across = left > x - f->width ? left : x - f->width, up = low > y - f->height ? low : y - f->height;
+  return across > up ? across : up;
+}
+
+/* What the receiver and the map's blur ask for on this face. No probes: nothing that is on it. */
 static footprint choose(const view *v, int has_footprint)
 {
   const dsm_map *map = v->worker->map;
@@ -64,6 +73,8 @@ static footprint choose(const view *v, int has_footprint)
   int alone = map->projection.count == 1;   /* what lies beyond a cube's face is not lit: see face_fit.c */
   if (has_footprint) {
     spread_add(&region, &map->projection, v->at, v->receiver->footprint);
+    if (alone && map->first_level == 0 && !footprint_may_reach(&region, distance_beside(v)))
+      return (footprint){0, 0, 0, 0, 0, 0, 0};
     if (alone && most < FOOTPRINT_LEVEL)
       most = FOOTPRINT_LEVEL;
     if (most < map->first_level)
@@ -88,6 +99,8 @@ static footprint choose(const view *v, int has_footprint)
 static dsm_result add_wide(view *v, int has_footprint)
 {
   footprint f = choose(v, has_footprint);
+  if (f.probes == 0)
+    return DSM_OK;
   for (;;) {
     double grey = v->lost_grey, blind = v->blind;
     rgb lost = v->lost;

@@ -79,6 +79,29 @@ static void rows_match(void **state) {
   assert_true(in_rows > (int)most_cases(20000) / 4);
 }
 
+static double reach_of(const footprint *f) {
+  double along = 0.5 * (f->probes - 1);
+  return (f->coarser > 0 ? 2 : 1) * ldexp(1.5, (int)f->level) + along * hypot(f->step_x, f->step_y) + hypot(f->side_x, f->side_y);
+}
+
+/* What is never read is never said to be read; and not much more. */
+static void reach_is_bounded(void **state) {
+  (void)state;
+  double closest = 1e9;
+  for (uint64_t seed = 0; seed < most_cases(20000); ++seed) {
+    rng r = rng_seeded(seed);
+    double size = rng_scale(&r, 0.01, 200), ratio = rng_scale(&r, 1, 50);
+    spread s = parallelogram((double[]){size * ratio, 0}, (double[]){0, size});
+    footprint f = footprint_of(&s, rng_below(&r, 8), FOOTPRINT_PROBES), two = footprint_in_rows(f);
+    double reach = fmax(reach_of(&f), reach_of(&two)), bound = sqrt(28 + 170 * (s.xx + s.yy));
+    assert_seeded(&r, footprint_may_reach(&s, reach) && footprint_may_reach(&s, -1e9) && !footprint_may_reach(&s, 1.001 * bound));
+    closest = fmin(closest, bound / reach);
+  }
+  assert_true(closest < 3);
+  spread odd = {NAN, 0, 1};
+  assert_true(footprint_may_reach(&odd, 1e300));
+}
+
 /* Longer regions than the probes can cover are read coarser; without probes the longer side decides. */
 static void limits(void **state) {
   (void)state;
@@ -168,6 +191,7 @@ int main(void) {
     cmocka_unit_test(up_to_a_pixel_nothing_changes),
     cmocka_unit_test(variances_match),
     cmocka_unit_test(rows_match),
+    cmocka_unit_test(reach_is_bounded),
     cmocka_unit_test(limits),
     cmocka_unit_test(continuous),
     cmocka_unit_test(sides_are_projected),
