@@ -170,9 +170,8 @@ static void add_orthographic(outline *sum, const double origin[3], const frame *
   include_depths(sum, fmax(0, nearest), farthest);
 }
 
-/* Whether a box lies well inside what has been seen: of many boxes nearly all do, and need not be projected. Rounding
- * has room, so that the sum does not depend on it. */
-static int within(const outline *sum, const double origin[3], const frame *axes, int perspective, const dsm_box *box)
+/* Rounding has room, so that the sum does not depend on it. */
+int outline_holds(const outline *sum, const double origin[3], const frame *axes, int perspective, const dsm_box *box)
 {
   double at[3] = {0, 0, 0}, reach[3] = {0, 0, 0}, nearest = 0, farthest = 0, away = 0;
   for (int i = 0; i < 3; i++) {
@@ -209,7 +208,7 @@ static int within(const outline *sum, const double origin[3], const frame *axes,
 void outline_add(outline *sum, const double origin[3], const frame *axes, int perspective,
                  const rectangle *window, const dsm_box *box)
 {
-  if (within(sum, origin, axes, perspective, box))
+  if (outline_holds(sum, origin, axes, perspective, box))
     return;
   if (perspective)
     add_perspective(sum, origin, axes, window, box);

@@ -21,4 +21,8 @@ typedef struct {
 void outline_add(outline *sum, const double origin[3], const frame *axes, int perspective,
                  const rectangle *window, const dsm_box *box);
 
+/* Whether a box lies well inside what has been seen, so that neither it nor a box in it makes that any larger. Of many boxes nearly all do,
+ * and need not be projected. */
+int outline_holds(const outline *sum, const double origin[3], const frame *axes, int perspective, const dsm_box *box);
+
 #endif

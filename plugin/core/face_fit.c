@@ -14,6 +14,8 @@ static const double COS_WIDEST = 0.5;   /* 60 degrees: beyond, a perspective pix
  * all of its light would fall beside the face. Squared. */
 static const double COS_ROUNDING = 0x1p-48;
 
+enum { TOGETHER = 16 };   /* boxes */
+
 enum { FIRST_PIXELS = 256 };   /* of the level at which a map with `accuracy` begins */
 
 /* What a fit is made for. */
@@ -106,11 +108,41 @@ static void pixel_size(const uint32_t resolution[2], uint32_t margin, double acr
     size[0] = size[1] = fmax(fmax(across, up) / inner_pixels(resolution[0], margin), least);
 }
 
+static double lower(double a, double b)
+{
+  return a < b ? a : b;
+}
+
+static double higher(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+static dsm_box box_around(const dsm_box *boxes, uint64_t count)
+{
+  dsm_box all = boxes[0];
+  for (uint64_t k = 1; k < count; k++)
+    for (int i = 0; i < 3; i++) {
+      all.low[i] = lower(all.low[i], boxes[k].low[i]);
+      all.high[i] = higher(all.high[i], boxes[k].high[i]);
+    }
+  return all;
+}
+
+/* Boxes that follow each other mostly lie near each other, and inside what has been seen: then they are not looked at one by one. */
 static outline outline_of(const wish *w, const projection *p, const frame *axes, const rectangle *window)
 {
   outline sum = OUTLINE_EMPTY;
-  for (uint64_t i = 0; i < box_count(w); i++)
-    outline_add(&sum, p->origin, axes, p->perspective, window, box_at(w, i));
+  uint64_t count = w->light->caster_count;
+  for (uint64_t first = 0, past; first < count; first = past) {
+    past = first + TOGETHER < count ? first + TOGETHER : count;
+    dsm_box all = box_around(&w->light->casters[first], past - first);
+    if (!outline_holds(&sum, p->origin, axes, p->perspective, &all))
+      for (uint64_t i = first; i < past; i++)
+        outline_add(&sum, p->origin, axes, p->perspective, window, &w->light->casters[i]);
+  }
+  if (w->bounds)
+    outline_add(&sum, p->origin, axes, p->perspective, window, w->bounds);
   return sum;
 }
 

@@ -55,7 +55,7 @@ static void choose_level(footprint *f, double scale, uint32_t most)
 
 footprint footprint_of(const spread *region, uint32_t most, uint32_t probes)
 {
-  footprint f = {0, 0, 1, 0, 0};
+  footprint f = {0, 0, 1, 0, 0, 0, 0};
   double trace = region->xx + region->yy;
   if (!(trace > PIXEL))   /* the usual case; false for NaN too */
     return f;
@@ -90,6 +90,18 @@ footprint footprint_of(const spread *region, uint32_t most, uint32_t probes)
     }
   }
   return f;
+}
+
+footprint footprint_in_rows(footprint f)
+{
+  if (!(f.coarser > 0))
+    return f;
+  /* pixels of the coarser level have three quarters of a finer one's area more variance along each axis */
+  double pixel = (double)(1u << f.level), more = 0.75 * f.coarser * pixel * pixel;
+  double h = sqrt(f.step_x * f.step_x + f.step_y * f.step_y), x = h > 0 ? f.step_x / h : 1, y = h > 0 ? f.step_y / h : 0;
+  uint32_t probes = f.probes > 1 ? f.probes : 2;
+  double covered = h * EXTENT[f.probes], step = sqrt(covered * covered + 12 * more) / EXTENT[probes], side = sqrt(more);
+  return step > 2 * pixel ? f : (footprint){f.level, 0, probes, step * x, step * y, -side * y, side * x};
 }
 
 footprint footprint_scaled(footprint f, double times, uint32_t most)

@@ -28,6 +28,7 @@ typedef struct {
   double coarser;          /* weight of level + 1, from 0 to below 1 */
   uint32_t probes;
   double step_x, step_y;   /* from one probe to the next, pixels of the finest level */
+  double side_x, side_y;   /* from the middle to each of two rows of probes; 0: there is one row */
 } footprint;
 
 /* Of a square of this side. */
@@ -47,8 +48,26 @@ footprint footprint_of(const spread *region, uint32_t most, uint32_t probes);
  * levels are baked for themselves, both cost. */
 footprint footprint_scaled(footprint f, double times, uint32_t most);
 
+/* The same region read at the finer of its two levels alone, by two rows of probes side by side:
+ *
+ *    .-------------------.      To make the coarser level of the finest costs far more than these reads, unless each of its pixels
+ *   /  o    o    o    o /       is read dozens of times. A region that is too long for its probes stays as it is.
+ *  /  o    o    o    o /
+ * '-------------------'
+ */
+footprint footprint_in_rows(footprint f);
+
 /* How many times the area the pixels that are read may have where the error aimed at is so large, 0 < accuracy < 0.5. */
 double footprint_coarser(double accuracy);
+
+/* Whether what a region asks for may be read so far away from it, pixels of the finest level. Costs next to nothing, and says so too often:
+ *
+ *   a footprint's pixels   1.5 * 2^(level + 1) or (1.5 + 1.3 + 0.9) * 2^level with its rows, and 4^level <= 1 + 4 * (xx + yy)
+ *   its probes             half of sqrt(12 * (xx + yy)) */
+static inline int footprint_may_reach(const spread *region, double distance)
+{
+  return !(distance > 0 && distance * distance > 28 + 170 * (region->xx + region->yy));   /* true for NaN */
+}
 
 /* Pixels of the finest level beyond which a footprint with these limits reads nothing. */
 static inline double footprint_reach(uint32_t most, int stretched)

@@ -296,9 +296,10 @@ dsm_result view_add_bilinear(view *v, uint32_t level, double x, double y, double
 void view_see_planes(view *v, const footprint *f, uint32_t level)
 {
   const dsm_map *map = v->worker->map;
-  double size = (double)(1u << level), apart = fabs(f->step_x) > fabs(f->step_y) ? fabs(f->step_x) : fabs(f->step_y);
+  double size = (double)(1u << level), along = 0.5 * (f->probes - 1);
+  double far_x = along * fabs(f->step_x) + fabs(f->side_x), far_y = along * fabs(f->step_y) + fabs(f->side_y);
   double baked = (double)(1u << (level < map->first_level ? level : map->first_level));
-  receiver_region region = {0.5 * (size - baked) + map->support * baked, size + 0.5 * (f->probes - 1) * apart};
+  receiver_region region = {0.5 * (size - baked) + map->support * baked, size + (far_x > far_y ? far_x : far_y)};
   for (uint32_t k = 0; k < v->plane_count; k++)
     receiver_plane_seen(&map->projection, v->at, &v->receiver->planes[k], &region, map->settings.bias, &v->planes[k]);
   double width = map->projection.faces[v->at->face].pixel_u;   /* pixels are square, or nearly */

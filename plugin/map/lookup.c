@@ -25,10 +25,14 @@ static dsm_result add_level(view *v, const footprint *f, uint32_t level, double 
     view_see_planes(v, f, level);
   if (f->probes == 1)
     return view_add_bilinear(v, level, v->at->x, v->at->y, share);
+  int two = f->side_x != 0 || f->side_y != 0;
   dsm_result result = DSM_OK;
+  share /= two ? 2 * f->probes : f->probes;
   for (uint32_t k = 0; k < f->probes && result == DSM_OK; k++) {
-    double along = k - 0.5 * (f->probes - 1);
-    result = view_add_bilinear(v, level, v->at->x + along * f->step_x, v->at->y + along * f->step_y, share / f->probes);
+    double along = k - 0.5 * (f->probes - 1), x = v->at->x + along * f->step_x, y = v->at->y + along * f->step_y;
+    result = view_add_bilinear(v, level, x - f->side_x, y - f->side_y, share);
+    if (two && result == DSM_OK)
+      result = view_add_bilinear(v, level, x + f->side_x, y + f->side_y, share);
   }
   return result;
 }
@@ -51,7 +55,16 @@ static dsm_result add_footprint(view *v, const footprint *f)
   return result == DSM_OK && f->coarser > 0 ? add_level(v, f, f->level + 1, v->at->weight * f->coarser) : result;
 }
 
-/* What the receiver and the map's blur ask for on this face. */
+/* How far outside the face the point lies, pixels; less than 0: inside. */
+static double distance_beside(const view *v)
+{
+  const face *f = &v->worker->map->projection.faces[v->at->face];
+  double x = v->at->x, y = v->at->y, left = -x, low = -y;
+  double across = left > x - f->width ? left : x - f->width, up = low > y - f->height ? low : y - f->height;
+  return across > up ? across : up;
+}
+
+/* What the receiver and the map's blur ask for on this face. No probes: nothing that is on it. */
 static footprint choose(const view *v, int has_footprint)
 {
   const dsm_map *map = v->worker->map;
@@ -60,20 +73,24 @@ static footprint choose(const view *v, int has_footprint)
   int alone = map->projection.count == 1;   /* what lies beyond a cube's face is not lit: see face_fit.c */
   if (has_footprint) {
     spread_add(&region, &map->projection, v->at, v->receiver->footprint);
+    if (alone && map->first_level == 0 && !footprint_may_reach(&region, distance_beside(v)))
+      return (footprint){0, 0, 0, 0, 0, 0, 0};
     if (alone && most < FOOTPRINT_LEVEL)
       most = FOOTPRINT_LEVEL;
     if (most < map->first_level)
       most = map->first_level;
   }
   most = face_level_within(&map->projection.faces[v->at->face], most);
-  if (map->first_level == 0)
-    return footprint_of(&region, most, alone && has_footprint ? FOOTPRINT_PROBES : 1);
+  if (map->first_level == 0) {
+    footprint f = footprint_of(&region, most, alone && has_footprint ? FOOTPRINT_PROBES : 1);
+    return alone && has_footprint && map->blur == 0 ? footprint_in_rows(f) : f;
+  }
   footprint f = footprint_of(&region, most, has_footprint ? REFINED_PROBES : 1);
   f = footprint_scaled(f, has_footprint ? map->coarser * (alone || map->blur > 0 ? 1 : IN_CUBES) : 1, most);
   if (!alone)
-    f = (footprint){f.level, f.coarser, 1, 0, 0};   /* beside the face a look-up would find nothing */
+    f = (footprint){f.level, f.coarser, 1, 0, 0, 0, 0};   /* beside the face a look-up would find nothing */
   if (!has_footprint && f.level + BLIND_LEVELS < map->first_level)
-    f = (footprint){map->first_level - BLIND_LEVELS, 0, 1, 0, 0};
+    f = (footprint){map->first_level - BLIND_LEVELS, 0, 1, 0, 0, 0, 0};
   return f;
 }
 
@@ -82,6 +99,8 @@ static footprint choose(const view *v, int has_footprint)
 static dsm_result add_wide(view *v, int has_footprint)
 {
   footprint f = choose(v, has_footprint);
+  if (f.probes == 0)
+    return DSM_OK;
   for (;;) {
     double grey = v->lost_grey, blind = v->blind;
     rgb lost = v->lost;
@@ -91,7 +110,7 @@ static dsm_result add_wide(view *v, int has_footprint)
     v->lost_grey = grey;
     v->lost = lost;
     v->blind = blind;
-    f = (footprint){f.level > 0 ? f.level - 1 : 0, 0, 1, 0, 0};
+    f = (footprint){f.level > 0 ? f.level - 1 : 0, 0, 1, 0, 0, 0, 0};
   }
 }
 

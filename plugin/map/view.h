@@ -34,7 +34,7 @@ typedef struct {
 #define VIEW_LEAST 1e-3
 
 /* A footprint without extent, of the finest level. */
-#define VIEW_ONE_PLACE ((footprint){0, 0, 1, 0, 0})
+#define VIEW_ONE_PLACE ((footprint){0, 0, 1, 0, 0, 0, 0})
 
 /* Rounds down. */
 static inline int32_t round_down(double x)

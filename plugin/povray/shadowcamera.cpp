@@ -29,14 +29,12 @@ inline Pair Dot(const Pair a[3], const Vector3d& b)
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// From the point to where the neighbours of its camera ray meet the tangent plane. In the plane, and finite, at any angle.
-void FootprintSides(double distance, const Pair origins[3], const Pair directions[3], const Vector3d& point, const Vector3d& normal, double sides[2][3])
+/// From the point to where the neighbours of its camera ray meet a plane. In the plane, and finite, at any angle.
+void FootprintSides(const Pair across[3], const Pair directions[3], const Vector3d& normal, double sides[2][3])
 {
 	const Pair zero = { 0.0, 0.0 }, steepest = zero + 1.0 / kMostStretch;
-	Pair across[3], slid[3], flat[3];
+	Pair slid[3], flat[3];
 
-	for(int k = 0; k < 3; k++)
-		across[k] = origins[k] + directions[k] * distance - point[k];
 	const Pair towards = Dot(directions, normal);
 	const Pair up = (towards > steepest) ? towards : steepest, down = (towards < -steepest) ? towards : -steepest;
 	const Pair slope = (towards < zero) ? down : up;
@@ -55,6 +53,21 @@ void FootprintSides(double distance, const Pair origins[3], const Pair direction
 		sides[0][k] = side[0];
 		sides[1][k] = side[1];
 	}
+}
+
+/// The ribbon that a rod shows to the camera, if the rod is thinner than the camera's samples are wide: the plane at the point ends within
+/// the rod's radius, so that its slope says nothing.
+/// @return     false if it is not, or is seen from its end
+bool FindRibbon(const ShadowSurface& surface, const Pair across[3], const Vector3d& ray, Vector3d& normal)
+{
+	const Pair square = across[0] * across[0] + across[1] * across[1] + across[2] * across[2];
+
+	if((surface.kind != ShadowSurface::kRod) || !(4.0 * Sqr(surface.radius) < min(square[0], square[1])))
+		return false;
+	normal = ray - surface.axis * dot(surface.axis, ray);
+	const double slope = normal.length();
+	normal *= 1.0 / slope;
+	return slope > 1.0e-3;
 }
 
 }
@@ -108,20 +121,25 @@ void Trace::FindShadowFootprint(const Vector3d& point)
 		return;
 	shadowReceiver.footprintKnown = true;
 
-	const double distance = (point - Vector3d(shadowReceiver.cameraRay->Origin)).length();
-	Pair origins[3], directions[3];
+	const ShadowSurface& surface = shadowReceiver.surface;
+	const Ray& cameraRay = *shadowReceiver.cameraRay;
+	const double distance = (point - Vector3d(cameraRay.Origin)).length();
+	Pair across[3], directions[3];
 	Ray neighbour;
 	for(int i = 0; i < 2; i++)
 	{
 		// one that is not there is infinitely far away, and leaves the footprint no side
-		const bool beside = CameraRayBeside(i == 1, neighbour);
+		const bool created = CameraRayBeside(i == 1, neighbour);
 		for(int k = 0; k < 3; k++)
 		{
-			origins[k][i] = beside ? neighbour.Origin[k] : HUGE_VAL;
 			directions[k][i] = neighbour.Direction[k];
+			across[k][i] = created ? neighbour.Origin[k] + neighbour.Direction[k] * distance - point[k] : HUGE_VAL;
 		}
 	}
-	FootprintSides(distance, origins, directions, point, shadowReceiver.surface.normal, shadowReceiver.asked.footprint);
+
+	Vector3d normal;
+	const bool ribbon = FindRibbon(surface, across, Vector3d(cameraRay.Direction), normal);
+	FootprintSides(across, directions, ribbon ? normal : surface.normal, shadowReceiver.asked.footprint);
 }
 
 }

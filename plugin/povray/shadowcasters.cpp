@@ -95,29 +95,51 @@ bool ShadowCasters::Dims(const Interior *interior)
 	return false;
 }
 
+/// What each of the scene's objects is: to look at one is to wait for memory.
+struct ShadowCasters::Look
+{
+	enum Kind { kNone, kMapped, kUnmapped };
+
+	const vector<ObjectPtr>& scene;
+	vector<dsm_box> boxes;
+	vector<unsigned char> kinds, volumes; ///< volumes: whether it has one
+
+	explicit Look(const vector<ObjectPtr>& s) : scene(s), boxes(s.size()), kinds(s.size()), volumes(s.size()) { }
+
+	void At(size_t stretch)
+	{
+		for(size_t i = stretch * kStretch; i < min((stretch + 1) * kStretch, scene.size()); i++)
+		{
+			// a light stands for its looks_like object, which never casts a shadow
+			if(Test_Flag(scene[i], NO_SHADOW_FLAG) || (scene[i]->Type & LIGHT_SOURCE_OBJECT))
+				continue;
+			kinds[i] = BoxOf(scene[i], boxes[i]) ? kMapped : kUnmapped;
+			volumes[i] = HasVolume(scene[i]);
+		}
+	}
+};
+
 ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene, unsigned int t) : threads(t), hasVolumes(false), hasUnmappedVolumes(false)
 {
+	Look look(scene);
+
+	ShareWork(threads, (scene.size() + kStretch - 1) / kStretch, boost::bind(&Look::At, &look, _1));
 	objects.reserve(scene.size());
-	boxes.reserve(scene.size());
-	for(vector<ObjectPtr>::const_iterator i(scene.begin()); i != scene.end(); i++)
-	{
-		dsm_box box;
-
-		// a light stands for its looks_like object, which never casts a shadow
-		if(Test_Flag(*i, NO_SHADOW_FLAG) || ((*i)->Type & LIGHT_SOURCE_OBJECT))
-			continue;
-
-		if(BoxOf(*i, box))
+	for(size_t i = 0; i < scene.size(); i++)
+		if(look.kinds[i] == Look::kMapped)
 		{
-			objects.push_back(*i);
-			boxes.push_back(box);
+			look.boxes[objects.size()] = look.boxes[i];
+			objects.push_back(scene[i]);
 		}
-		else
-			unmapped.push_back(*i);
-	}
+		else if(look.kinds[i] == Look::kUnmapped)
+			unmapped.push_back(scene[i]);
+	boxes.swap(look.boxes);
+	boxes.resize(objects.size());
 
 	SplitOffOutsized();
 
+	if(std::find(look.volumes.begin(), look.volumes.end(), 1) == look.volumes.end())
+		return;
 	for(vector<ObjectPtr>::const_iterator i(objects.begin()); i != objects.end(); i++)
 		if(HasVolume(*i))
 		{

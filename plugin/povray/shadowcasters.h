@@ -86,6 +86,8 @@ class ShadowCasters
 		bool hasVolumes, hasUnmappedVolumes;
 		ShadowVolumes volumes;
 
+		struct Look;
+
 		void SplitOffOutsized();
 		void Sketch(const vector<unsigned int>& places, size_t stretch) const;
 };

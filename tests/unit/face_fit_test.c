@@ -10,7 +10,7 @@
 #include "core/face_fit.h"
 #include "random.h"
 
-enum { BOXES = 4 };
+enum { BOXES = 40 };
 
 static void fit(const dsm_light *light, const uint32_t resolution[2], double filter_width, projection *out) {
   dsm_settings settings;
@@ -35,7 +35,7 @@ static dsm_light random_light(rng *r, dsm_box boxes[BOXES]) {
   for (int i = 0; i < 3; ++i) light.direction[i] /= sqrt(length);
   light.cos_angle = cos(acos(-1) / 180 * (rng_below(r, 2) ? rng_between(r, 1, 60) : rng_between(r, 60, 179)));
   light.radius = rng_below(r, 2) ? 0 : rng_between(r, 0.5, 5);
-  light.caster_count = 1 + rng_below(r, BOXES);
+  light.caster_count = 1 + rng_below(r, rng_below(r, 2) ? 4 : BOXES);
   for (uint64_t k = 0; k < light.caster_count; ++k)
     for (int i = 0; i < 3; ++i) {
       boxes[k].low[i] = step(r, -spread, spread);

@@ -55,6 +55,53 @@ static void variances_match(void **state) {
   }
 }
 
+/* Two rows have the variance of the two levels whose place they take, along both axes, and leave no gaps. */
+static void rows_match(void **state) {
+  (void)state;
+  int in_rows = 0;
+  for (uint64_t seed = 0; seed < most_cases(20000); ++seed) {
+    rng r = rng_seeded(seed);
+    double size = rng_scale(&r, 0.5, 200), ratio = rng_scale(&r, 1, 20), angle = rng_between(&r, 0, 6.3);
+    spread s = parallelogram((double[]){size * ratio * cos(angle), size * ratio * sin(angle)}, (double[]){-size * sin(angle), size * cos(angle)});
+    footprint f = footprint_of(&s, 6, FOOTPRINT_PROBES), two = footprint_in_rows(f);
+    double pixel = ldexp(1, (int)f.level), step = hypot(two.step_x, two.step_y), side = hypot(two.side_x, two.side_y);
+    assert_seeded(&r, two.level == f.level && step <= 2 * sqrt(4 * across(&f)) * (1 + 1e-9));
+    if (two.coarser > 0 || f.coarser == 0) {   /* as it was */
+      assert_seeded(&r, two.coarser == f.coarser && two.probes == f.probes && two.step_x == f.step_x && two.step_y == f.step_y && side == 0);
+      continue;
+    }
+    in_rows++;
+    assert_seeded(&r, step <= 2 * pixel && two.probes >= 2 && two.probes <= FOOTPRINT_PROBES);
+    assert_seeded(&r, fabs(across(&two) + side * side - across(&f)) < 1e-9 * across(&f) && fabs(along(&two) - along(&f)) < 1e-9 * along(&f));
+    assert_seeded(&r, fabs(two.step_x * two.side_x + two.step_y * two.side_y) < 1e-9 * step * side);
+    assert_seeded(&r, fabs(two.step_x * f.step_y - two.step_y * f.step_x) <= 1e-9 * step * hypot(f.step_x, f.step_y));
+  }
+  assert_true(in_rows > (int)most_cases(20000) / 4);
+}
+
+static double reach_of(const footprint *f) {
+  double along = 0.5 * (f->probes - 1);
+  return (f->coarser > 0 ? 2 : 1) * ldexp(1.5, (int)f->level) + along * hypot(f->step_x, f->step_y) + hypot(f->side_x, f->side_y);
+}
+
+/* What is never read is never said to be read; and not much more. */
+static void reach_is_bounded(void **state) {
+  (void)state;
+  double closest = 1e9;
+  for (uint64_t seed = 0; seed < most_cases(20000); ++seed) {
+    rng r = rng_seeded(seed);
+    double size = rng_scale(&r, 0.01, 200), ratio = rng_scale(&r, 1, 50);
+    spread s = parallelogram((double[]){size * ratio, 0}, (double[]){0, size});
+    footprint f = footprint_of(&s, rng_below(&r, 8), FOOTPRINT_PROBES), two = footprint_in_rows(f);
+    double reach = fmax(reach_of(&f), reach_of(&two)), bound = sqrt(28 + 170 * (s.xx + s.yy));
+    assert_seeded(&r, footprint_may_reach(&s, reach) && footprint_may_reach(&s, -1e9) && !footprint_may_reach(&s, 1.001 * bound));
+    closest = fmin(closest, bound / reach);
+  }
+  assert_true(closest < 3);
+  spread odd = {NAN, 0, 1};
+  assert_true(footprint_may_reach(&odd, 1e300));
+}
+
 /* Longer regions than the probes can cover are read coarser; without probes the longer side decides. */
 static void limits(void **state) {
   (void)state;
@@ -73,6 +120,10 @@ static void limits(void **state) {
         double reach = (f.coarser > 0 ? 2 : 1) * ldexp(1.5, (int)f.level)
                      + 0.5 * (f.probes - 1) * fmax(fabs(f.step_x), fabs(f.step_y));
         assert_true(reach <= footprint_reach(most, stretched) + 1e-9);
+        f = footprint_in_rows(f);
+        reach = (f.coarser > 0 ? 2 : 1) * ldexp(1.5, (int)f.level)
+              + 0.5 * (f.probes - 1) * fmax(fabs(f.step_x), fabs(f.step_y)) + fmax(fabs(f.side_x), fabs(f.side_y));
+        assert_true(reach <= footprint_reach(most, 1) + 1e-9);
       }
   const double odd[] = {NAN, INFINITY};
   for (int i = 0; i < 2; ++i) {
@@ -139,6 +190,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(up_to_a_pixel_nothing_changes),
     cmocka_unit_test(variances_match),
+    cmocka_unit_test(rows_match),
+    cmocka_unit_test(reach_is_bounded),
     cmocka_unit_test(limits),
     cmocka_unit_test(continuous),
     cmocka_unit_test(sides_are_projected),
