@@ -84,8 +84,6 @@ dsm_result ShadowEvents::TraceRays(const LightSource& light, const dsm_ray *rays
 			const bool whole = volumes && casters.HasVolumes() && CanSpare(ofPixel) && ((done + i) % ofPixel == 0) && (i + ofPixel <= ready);
 
 			next = i + (whole ? ofPixel : 1);
-			if((done + i) % ofPixel == 0)
-				media.BeginPixel();
 			const dsm_result result = whole ? ReportPixel(light, rays + done, i, ofPixel, tolerance, sink, done)
 			                                : ReportRay(light, rays + done, i, tolerance, sink, done);
 			if(result != DSM_OK)

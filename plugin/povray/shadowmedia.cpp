@@ -54,13 +54,6 @@ const double kNothing = 1.0e-9;
 /// A run is passed when it has come to this many samples.
 const size_t kMostPlanned = 64;
 
-/// Neighbours learn from a ray nearer to them than this share of a first step, unless it has met a jump: they pass what it has passed.
-const double kNearShare = 0.5;
-
-/// So many steps, and half as many, may be one for them if it bends by less than this share of what is allowed.
-const size_t kCalmSteps = 4;
-const double kCalmShare = 0.25;
-
 const double kHuge = std::numeric_limits<double>::max();
 
 double Least(const DblRGBColour& c) { return min(c.red(), min(c.green(), c.blue())); }
@@ -92,7 +85,7 @@ double Jump(double before, double a, double b, double after, bool bothSides)
 
 }
 
-ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), grows(false), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0), guide(NULL), guideJumps(false), guided(false), jumped(0.0)
+ShadowMedia::ShadowMedia(TraceThreadData *td) : evaluations(0), thread(td), grey(true), grows(false), ray(NULL), visibleAtFront(1.0), allowed(0.0), allowedSmooth(0.0), allowedInRun(0.0), firstStep(0.0), shortest(0.0)
 {
 }
 
@@ -114,13 +107,6 @@ void ShadowMedia::Add(const ShadowMedium& medium)
 	grey = grey && others.empty() && medium.Mapped()->Transfer().Grey() && (Least(medium.Scale()) == Largest(medium.Scale()));
 }
 
-void ShadowMedia::BeginPixel()
-{
-	guide = NULL;
-	guideJumps = false;
-	calm.clear();
-}
-
 double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, double visible, double wanted, double slackness, Sink& sink)
 {
 	const double tolerance = max(wanted, kLeastTolerance), dark = kDarkShare * tolerance;
@@ -135,7 +121,6 @@ double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, doubl
 	allowed = kStepShare * tolerance;
 	allowedSmooth = slackness * allowed;
 	Begin(front, back);
-	FindGuide(front, back);
 
 	for(double depth = front; (depth < back) && (points.back().visible > dark); depth = stretch.end)
 	{
@@ -155,8 +140,6 @@ double ShadowMedia::Integrate(const dsm_ray& r, double front, double back, doubl
 		const bool full = (planned.size() >= kMostPlanned) || (stretch.end >= back);
 		if(planned.empty())
 			Plan(depth, stretch.step, true);
-		if(guided && !stretch.grid && (stretch.step >= firstStep))
-			PlanLikeGuide(stretch.end, stretch.step);
 		Plan(stretch.end, stretch.step, full);
 		if(stretch.grid)
 			allowedInRun = kGridShare * allowed;
@@ -291,82 +274,6 @@ void ShadowMedia::Plan(double depth, double step, bool forced)
 	}
 }
 
-/// Whether the ray has a guide for this piece; the pixel's first one becomes it.
-void ShadowMedia::FindGuide(double front, double back)
-{
-	const double near = kNearShare * firstStep;
-
-	if(guide == NULL)
-	{
-		guide = ray;
-		guideMedia = media;
-	}
-	guided = (guide != ray) && !guideJumps && (guideMedia == media) && IsNear(*guide, front, near) && IsNear(*guide, back, near);
-}
-
-/// Plans samples as far as the guide tells of long steps that end before `depth`.
-void ShadowMedia::PlanLikeGuide(double depth, double step)
-{
-	for(vector<Calm>::const_iterator i(calm.begin()); (i != calm.end()) && (i->end < depth - 0.5 * step); i++)
-	{
-		const double from = planned.back().depth;
-		if((i->begin < from - 0.5 * step) || (i->end < from + step))
-			continue;
-
-		Sample sample;
-		sample.known = false;
-		sample.depth = i->end;
-		Plan(i->begin, step, false);
-		planned.push_back(sample);
-	}
-}
-
-bool ShadowMedia::IsNear(const dsm_ray& other, double depth, double distance) const
-{
-	double square = 0.0;
-
-	for(int i = 0; i < 3; i++)
-		square += Sqr(other.origin[i] - ray->origin[i] + depth * (other.direction[i] - ray->direction[i]));
-	return square <= Sqr(distance);
-}
-
-/// Whether extinction is straight along so many half steps from a point on.
-bool ShadowMedia::IsCalm(size_t point, size_t count) const
-{
-	// a parabola is this many times as far from its chord as what lies between the middles of the first and the last of four half steps
-	const double kOfChord = 2.5;
-	const Point *p = &points[point];
-	const double length = (p[count].depth - p[0].depth) / count;
-	DblRGBColour bend(0.0);
-
-	const DblRGBColour begin(p[1].thickness - p[0].thickness), end(p[count].thickness - p[count - 1].thickness);
-	for(size_t i = 0; i < count; i++)
-	{
-		const double along = double(i) / (count - 1);
-		if(fabs(p[i + 1].depth - p[i].depth - length) > 0.01 * length)
-			return false;
-		for(int k = 0; k < 3; k++)
-			bend[k] += fabs(p[i + 1].thickness[k] - p[i].thickness[k] - begin[k] * (1.0 - along) - end[k] * along);
-	}
-	return kOfChord * Largest(bend) * p[0].visible <= kCalmShare * allowedSmooth;
-}
-
-/// Remembers where a run could have taken longer steps. `point`: where it began.
-void ShadowMedia::Learn(size_t point)
-{
-	while(point + 2 < points.size())
-	{
-		size_t steps = kCalmSteps;
-		while((steps > 1) && ((point + 2 * steps >= points.size()) || !IsCalm(point, 2 * steps)))
-			steps /= 2;
-
-		const Calm found = { points[point].depth, points[point + 2 * steps].depth };
-		if(steps > 1)
-			calm.push_back(found);
-		point += 2 * steps;
-	}
-}
-
 void ShadowMedia::Know(Sample& sample) const
 {
 	if(sample.known)
@@ -406,7 +313,6 @@ void ShadowMedia::Run(double dark)
 		planned[1].depth = 0.5 * (planned[0].depth + planned[2].depth);
 	}
 
-	const size_t begin = points.size() - 1;
 	passed.clear();
 	passed.push_back(planned.front());
 	ahead.assign(planned.rbegin(), planned.rend() - 1);
@@ -427,7 +333,6 @@ void ShadowMedia::Run(double dark)
 		const double bend = grey ? Bend<1>(before, passed[last], ahead[next], after, halves) : Bend<3>(before, passed[last], ahead[next], after, halves);
 		if((bend * points.back().visible <= allowedInRun) || (to - from <= shortest))
 		{
-			guideJumps = guideJumps || ((guide == ray) && (jumped * points.back().visible > kCalmShare * allowed));
 			Advance(middle, halves[0]);
 			Advance(to, halves[1]);
 			passed.push_back(ahead.back());
@@ -447,8 +352,6 @@ void ShadowMedia::Run(double dark)
 			points.resize(points.size() - 2, points.front());
 		}
 	}
-	if((guide == ray) && (guideMedia == media))
-		Learn(begin);
 	allowedInRun = allowedSmooth;
 	shortest = kHuge;
 }
@@ -517,13 +420,12 @@ double ShadowMedia::Bend(const Sample *before, const Sample& from, const Sample&
 		}
 	}
 
-	double bend = jumped = 0.0;
+	double bend = 0.0;
 	for(int k = 0; k < kChannels; k++)
 	{
 		double sum = 0.0;
 		for(int q = 0; q < 4; q++)
 			sum += fabs(curved[q][k] - straight[q][k]);
-		jumped = max(jumped, kJump * jumps[k] * 0.25 * length);
 		bend = max(bend, max(sum, kJump * jumps[k] * allowedInRun / allowed));
 	}
 	for(int k = 0; k < 3; k++)

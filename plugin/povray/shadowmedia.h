@@ -37,9 +37,6 @@ class ShadowMedia
 		void Add(const ShadowMedium& medium);
 		bool Empty() const { return media.empty(); }
 
-		/// Rays of one map pixel follow, side by side. The first tells the others where long steps will do.
-		void BeginPixel();
-
 		/// @param[in]      visible     largest channel of the light that is left at `front`: the less, the coarser the steps
 		/// @param[in]      tolerance   of light at any depth
 		/// @param[in]      slackness   how many times as wrong a step may be where nothing makes neighbouring steps and rays err
@@ -106,26 +103,12 @@ class ShadowMedia
 		vector<Sample> planned;       ///< nearest first
 		vector<Sample> passed, ahead; ///< the nearest to the end of what is passed last in both
 		double allowedInRun;
-		mutable double jumped;        ///< optical depth by which a jump in the step that was looked at last may be off
 		double shortest;
-
-		// of a pixel
-		struct Calm { double begin, end; };
-		const dsm_ray *guide;         ///< its first ray in media; NULL: none yet
-		vector<const ShadowMedium *> guideMedia; ///< the first ones that it met
-		vector<Calm> calm;            ///< where one step would have done for several of that ray's, in those media
-		bool guideJumps;              ///< the density does, somewhere on its way: it tells nothing
-		bool guided;                  ///< the ray under way is near enough to it, in the same media
 
 		void Begin(double front, double back);
 		void Look(double depth, double back, Stretch& stretch);
 		bool IsEven(const DblRGBColour& least, const DblRGBColour& most) const;
 		void Plan(double depth, double step, bool forced);
-		void PlanLikeGuide(double depth, double step);
-		void FindGuide(double front, double back);
-		bool IsNear(const dsm_ray& other, double depth, double distance) const;
-		bool IsCalm(size_t point, size_t count) const;
-		void Learn(size_t point);
 		void Know(Sample& sample) const;
 		void Run(double dark);
 		template<int kChannels>
