@@ -20,9 +20,13 @@ void ShadowFilesTask::Run()
 {
 	ShadowMaps& maps = *GetSceneData()->shadowMaps;
 	ShadowContext& context = *maps.Current();
-	std::set<string> saved;
+	size_t i = maps.TakeFile();
 
-	for(size_t i = 0; i < maps.Count(); i++)
+	// while the first one waits for the library that reads files, another makes what the files' probe rays are found with; alone, as the
+	// system makes no threads while it loads a library
+	if(i > 0)
+		maps.Casters().Prepare(1);
+	for(; i != ShadowMaps::kNone; i = maps.TakeFile())
 	{
 		const ShadowMap& map = maps[i];
 
@@ -30,8 +34,9 @@ void ShadowFilesTask::Run()
 			context.Load(i, map.loadPath);
 		if(map.savePath.empty())
 			continue;
-		if(!saved.insert(map.savePath).second)
-			throw POV_EXCEPTION(kParamErr, "Deep shadows: two light sources have the save_file '" + map.savePath + "'; each needs a file of its own.");
+		for(size_t other = 0; other < i; other++)
+			if(maps[other].savePath == map.savePath)
+				throw POV_EXCEPTION(kParamErr, "Deep shadows: two light sources have the save_file '" + map.savePath + "'; each needs a file of its own.");
 		context.BeginSave(i, map.savePath);
 	}
 }

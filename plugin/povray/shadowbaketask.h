@@ -9,7 +9,8 @@
 namespace pov
 {
 
-/// Opens the files of all maps, alone: a file that cannot be used stops the render before any work is lost.
+/// Opens the files of maps, with as many others of its kind as there are threads, and nothing else beside them: a file that cannot be used
+/// stops the render before any work is lost.
 class ShadowFilesTask : public RenderTask
 {
 	public:

@@ -150,7 +150,7 @@ ShadowCasters::ShadowCasters(const vector<ObjectPtr>& scene, unsigned int t) : t
 		hasUnmappedVolumes = hasUnmappedVolumes || HasVolume(*i);
 }
 
-void ShadowCasters::Prepare() const
+void ShadowCasters::Prepare(unsigned int threads) const
 {
 	boost::lock_guard<boost::mutex> lock(mutex);
 

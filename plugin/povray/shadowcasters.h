@@ -42,7 +42,8 @@ class ShadowCasters
 		void Containing(const Vector3d& point, TraceThreadData *thread, vector<ObjectPtr>& out) const;
 
 		/// To be called before any ray is traced: what light rays are found with is made when the first one comes.
-		void Prepare() const;
+		void Prepare() const { Prepare(threads); }
+		void Prepare(unsigned int threads) const;
 
 		/// The boxes as a tree, and the object that a box of the tree belongs to.
 		const ShadowTree& Tree() const { return *tree; }

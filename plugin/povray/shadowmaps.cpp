@@ -110,7 +110,8 @@ ShadowMaps::ShadowMaps(ViewData *vd, int method, int threadCount, vector<ViewThr
 	casters((method == kPOVList_ShadowMethod_None) ? kNoObjects : vd->GetSceneData()->objects, threadCount),
 	unshadowed(method == kPOVList_ShadowMethod_None),
 	rayTracedLights(0),
-	current(&ShadowMaps::Release)
+	current(&ShadowMaps::Release),
+	nextFile(0)
 {
 	const SceneData& scene = *viewData->GetSceneData();
 
@@ -215,18 +216,18 @@ bool ShadowMaps::Create(const LightSource& light, const ShadowSettings& settings
 
 void ShadowMaps::AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads, unsigned int method, double threshold, unsigned int depth)
 {
-	bool files = false, saves = false;
+	size_t files = 0;
+	bool saves = false;
 
 	for(vector<ShadowMap>::const_iterator i(maps.begin()); i != maps.end(); i++)
 	{
 		saves = saves || !i->savePath.empty();
-		files = files || saves || !i->loadPath.empty();
+		files += i->HasFile() ? 1 : 0;
 	}
-	if(files)
-	{
+	for(size_t i = 0; i < min(files, contexts.size()); i++)
 		threads.push_back(static_cast<ViewThreadData *>(queue.AppendTask(new ShadowFilesTask(viewData))));
+	if(files > 0)
 		queue.AppendSync();
-	}
 	if(saves)
 	{
 		bakers.assign(maps.size(), contexts.size());
@@ -300,6 +301,15 @@ double ShadowMaps::FinestTiles(size_t map) const
 	s.size = sizeof(s);
 	ShadowPlugin::Api().statistics(maps[map].map.get(), &s);
 	return min(double(s.tiles), 2.0 * s.faces + 1.1 * s.pixels / kTilePixels); // those at edges are cut
+}
+
+size_t ShadowMaps::TakeFile()
+{
+	boost::lock_guard<boost::mutex> lock(bakeMutex);
+
+	while((nextFile < maps.size()) && !maps[nextFile].HasFile())
+		nextFile++;
+	return (nextFile < maps.size()) ? nextFile++ : kNone;
 }
 
 bool ShadowMaps::LeaveBake(size_t map)

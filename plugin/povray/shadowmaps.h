@@ -27,6 +27,7 @@ struct ShadowMap
 	bool atmosphere;  ///< fog and atmospheric media dim this light, and are multiplied in at the look-up
 	bool deep;        ///< else it holds one depth a pixel
 	string loadPath, savePath; ///< empty: no file
+	bool HasFile() const { return !loadPath.empty() || !savePath.empty(); }
 
 	enum Choice { kNone, kOpen, kMap, kRays };
 	Choice choice;    ///< kNone: it had none; kOpen: not before the survey is over
@@ -76,6 +77,9 @@ class ShadowMaps
 		/// Tells the front end how far the map is, now and then.
 		void Progress(size_t map, double share, bool saving);
 
+		/// The next map that has a file and that nobody has taken yet, or kNone.
+		size_t TakeFile();
+
 		/// To be called by each bake task when the map has no tile left to take.
 		/// @return                     true for the last of them: all tiles are baked
 		bool LeaveBake(size_t map);
@@ -105,6 +109,7 @@ class ShadowMaps
 		boost::thread_specific_ptr<ShadowContext> current;
 
 		boost::mutex bakeMutex;         ///< guards what follows
+		size_t nextFile;                ///< no map before this one is left for TakeFile
 		vector<size_t> bakers;          ///< for each map, the tasks that are still baking it
 		std::set<string> stages;        ///< that the front end knows of
 		Timer sinceProgress;
