@@ -47,6 +47,7 @@ typedef struct deep_reader deep_reader;
 /* `error` is set to a short phrase, without a full stop, by every function that fails. One thread at a time for each
  * writer and reader. */
 typedef struct { char text[300]; } deep_error;
+#define DEEP_NO_MEMORY "out of memory"        /* that phrase where it is nothing else */
 
 typedef struct {
   uint32_t size;   /* of this table: another one is of another version */

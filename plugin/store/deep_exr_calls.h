@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <string>
 
+#include "store/address_room.h"
 #include "store/deep_exr.h"
 
 // The first line of the text, without full stops at its end.
@@ -27,6 +29,10 @@ template<class Result, class Work> Result Guarded(deep_error *error, Result fail
     {
         return work();
     }
+    catch (const std::bad_alloc&)
+    {
+        memcpy(error->text, DEEP_NO_MEMORY, sizeof DEEP_NO_MEMORY);
+    }
     catch (const std::exception& e)
     {
         try { Say(error, e.what()); } catch (...) { error->text[0] = '\0'; }
@@ -35,6 +41,18 @@ template<class Result, class Work> Result Guarded(deep_error *error, Result fail
     {
         error->text[0] = '\0';
     }
+    return failed;
+}
+
+// Far more than a call for one tile needs.
+const size_t kRoomToWork = size_t(32) << 20;
+
+// The same for what begins something or goes on with it: not where memory is short. What ends it is done in any case.
+template<class Result, class Work> Result GuardedWithRoom(deep_error *error, Result failed, Work work) noexcept
+{
+    if (has_address_room(kRoomToWork))
+        return Guarded(error, failed, work);
+    memcpy(error->text, DEEP_NO_MEMORY, sizeof DEEP_NO_MEMORY);
     return failed;
 }
 

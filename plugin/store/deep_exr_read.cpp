@@ -24,7 +24,7 @@ struct deep_reader
 
 deep_reader *DeepOpen(const char *path, deep_error *error)
 {
-    return Guarded(error, (deep_reader *)nullptr, [&]() -> deep_reader * {
+    return GuardedWithRoom(error, (deep_reader *)nullptr, [&]() -> deep_reader * {
         PrepareLibrary();
         auto reader = std::make_unique<deep_reader>();
         reader->input = ImageInput::create("openexr");
@@ -71,7 +71,7 @@ static std::vector<int> PlacesOfChannels(const ImageSpec& spec, const deep_part&
 int DeepHasParts(deep_reader *reader, const deep_part *parts, uint32_t partCount)
 {
     deep_error ignored;
-    return Guarded(&ignored, 0, [&]() -> int {
+    return GuardedWithRoom(&ignored, 0, [&]() -> int {
         reader->places.clear();
         reader->flat = partCount > 0 && parts[0].flat;
         for (uint32_t i = 0; i < partCount; i++)
@@ -116,7 +116,7 @@ static int ReadFlat(deep_reader *reader, uint32_t part, int left, int low, deep_
                                           int(places.size()), reader->pixels.data()))
         return Say(error, reader->input->geterror()), 0;
     if (!MakeRoom(tile, reader->pixels.size()))
-        return Say(error, "out of memory"), 0;
+        return Say(error, DEEP_NO_MEMORY), 0;
     for (size_t p = 0; p < DEEP_PIXELS; p++)
     {
         tile->count[p] = 1;
@@ -128,7 +128,7 @@ static int ReadFlat(deep_reader *reader, uint32_t part, int left, int low, deep_
 
 int DeepRead(deep_reader *reader, uint32_t part, uint32_t x, uint32_t y, deep_tile *tile, deep_error *error)
 {
-    return Guarded(error, 0, [&]() -> int {
+    return GuardedWithRoom(error, 0, [&]() -> int {
         int left = int(x) * DEEP_SIDE, low = int(y) * DEEP_SIDE;
         DeepData& data = reader->data;
         const std::vector<int>& places = reader->places.at(part);
@@ -140,7 +140,7 @@ int DeepRead(deep_reader *reader, uint32_t part, uint32_t x, uint32_t y, deep_ti
         if (data.pixels() != DEEP_PIXELS || data.samplesize() != places.size() * sizeof *tile->words)
             return Say(error, "a tile of another shape"), 0;
         if (!MakeRoom(tile, CountSamples(data, tile) * places.size()))
-            return Say(error, "out of memory"), 0;
+            return Say(error, DEEP_NO_MEMORY), 0;
         uint32_t *word = tile->words;
         for (int p = 0; p < DEEP_PIXELS; p++)
         {

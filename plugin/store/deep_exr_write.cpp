@@ -36,7 +36,7 @@ static ImageSpec SpecOf(const deep_part& part, int width, int height)
 deep_writer *DeepCreate(const char *path, const deep_part *parts, uint32_t partCount, const deep_attribute *attributes,
                         uint32_t attributeCount, deep_error *error)
 {
-    return Guarded(error, (deep_writer *)nullptr, [&]() -> deep_writer * {
+    return GuardedWithRoom(error, (deep_writer *)nullptr, [&]() -> deep_writer * {
         PrepareLibrary();
         auto writer = std::make_unique<deep_writer>();
         writer->path = path;
@@ -67,7 +67,7 @@ deep_writer *DeepCreate(const char *path, const deep_part *parts, uint32_t partC
 
 int DeepWrite(deep_writer *writer, uint32_t part, uint32_t x, uint32_t y, const deep_tile *tile, deep_error *error)
 {
-    return Guarded(error, 0, [&]() -> int {
+    return GuardedWithRoom(error, 0, [&]() -> int {
         for (; writer->part < part; writer->part++)
             if (!writer->output->open(writer->path, writer->specs[writer->part + 1], ImageOutput::AppendSubimage))
                 return Say(error, writer->output->geterror()), 0;

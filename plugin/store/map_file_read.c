@@ -28,8 +28,12 @@ static dsm_result cannot_load(const char *path, const deep_error *error, map_rea
   return map_refused(why, "The shadow map \"%s\" cannot be used: there is no OpenImageIO (%s).", path, error->text);
 }
 
+static int is_memory(const deep_error *error) { return strcmp(error->text, DEEP_NO_MEMORY) == 0; }
+
 static dsm_result damaged(const char *path, const deep_error *error, map_reason *why)
 {
+  if (is_memory(error))
+    return map_no_memory(why);
   return map_refused(why, "The shadow map \"%s\" is damaged or cut off (%s).", path, error->text);
 }
 
@@ -202,7 +206,7 @@ static dsm_result read_tile(map_file *file, const tile_key *key, const tile **ou
     return DSM_REFUSED;
   }
   if (!file->exr->read(file->reader, part, key->x, key->y, &file->deep, error))
-    return DSM_REFUSED;
+    return is_memory(error) ? DSM_NO_MEMORY : DSM_REFUSED;
   return restore_tile(&file->deep, file->kind, record, number, out);
 }
 

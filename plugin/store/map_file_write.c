@@ -25,6 +25,8 @@ typedef struct {
 
 static dsm_result cannot_write(const writing *w, const deep_error *error)
 {
+  if (strcmp(error->text, DEEP_NO_MEMORY) == 0)
+    return map_no_memory(w->why);
   return map_refused(w->why, "The shadow map \"%s\" cannot be written: %s.", w->path, error->text);
 }
 
