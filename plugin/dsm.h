@@ -261,6 +261,12 @@ typedef struct {
   uint32_t (*sink_pixel_rays)(const dsm_sink *sink);
   /* The ray does not count, nor what was reported of it: the pixel's other rays tell as much. One of them must be left. */
   dsm_result (*sink_spare)(dsm_sink *sink, uint32_t ray);
+
+  /* A map with `accuracy` spares light rays if it is shown a few places of the picture before the first look-up: what camera rays that are spread
+   * over it would ask for. It looks at them with its coarsest pixels. `explored` says how many camera rays that were, and how many lie side by
+   * side in an image pixel; from then on look-ups read the map as coarse as that picture allows. */
+  dsm_result (*explore)(dsm_worker *worker, const dsm_receiver *receiver);                      /* [one] for the map */
+  void (*explored)(dsm_map *map, uint64_t camera_rays, double rays_across);                     /* [one] for the map */
 } dsm_api_table;
 
 /* The one exported symbol. */

@@ -3,6 +3,7 @@
 #include "bake/baker.h"
 #include "core/events.h"
 #include "core/settings.h"
+#include "map/explore.h"
 #include "map/lookup.h"
 #include "map/map.h"
 #include "map/wanted_tiles.h"
@@ -42,4 +43,6 @@ const dsm_api_table dsm_api = {
   .bake_tile = map_bake_tile,
   .sink_pixel_rays = sink_pixel_rays,
   .sink_spare = sink_spare,
+  .explore = map_explore,
+  .explored = map_explored,
 };

@@ -92,6 +92,22 @@ static uint32_t past_share(const pass *p, uint32_t share)
   return smaller((share + 1) * p->share_pixels, p->places->count);
 }
 
+/* The rays of as many pixels as a batch takes, from *done on, of which *count have something to trace: their places. The others are lit. */
+static void fill_batch(const pass *p, const bake_job *job, bake_scratch *s, baked_share *out, uint32_t past, uint32_t batch, uint32_t *done,
+                       uint8_t place[TILE_PIXELS], uint32_t *count)
+{
+  uint32_t samples = p->samples;
+  for (*count = 0; *done < past && *count < batch; ++*done) {
+    dsm_ray *rays = s->rays + (size_t)*count * samples;
+    place[*count] = p->places->place[*done];
+    make_rays(job, p->key, place[*count], s->path, samples, rays);
+    if (job->settings->accuracy > 0 && !tile_boxes_may_meet(&p->out->boxes, rays, samples))
+      p->out->pixels[place[*count]] = (baked_pixel){.first = out->stored.count};
+    else
+      ++*count;
+  }
+}
+
 static dsm_result bake_batches(const pass *p, const bake_job *job, bake_scratch *s, uint32_t share)
 {
   uint32_t past = past_share(p, share), samples = p->samples;
@@ -99,12 +115,11 @@ static dsm_result bake_batches(const pass *p, const bake_job *job, bake_scratch 
   baked_share *out = &p->out->shares[share];
   noise_limits limits = limits_of(job, p->key->face, p->key->level, samples);
   dsm_result result = make_room(s, samples, batch * samples);
-  for (uint32_t done = share * p->share_pixels; result == DSM_OK && done < past; done += batch) {
-    uint32_t count = smaller(batch, past - done);
-    const uint8_t *place = p->places->place + done;
-    for (uint32_t i = 0; i < count; i++)
-      make_rays(job, p->key, place[i], s->path, samples, s->rays + (size_t)i * samples);
-    result = paused(job) ? DSM_CANCELLED : trace_batch(job, s, samples, count * samples, &out->tally);
+  for (uint32_t done = share * p->share_pixels; result == DSM_OK && done < past;) {
+    uint8_t place[TILE_PIXELS];
+    uint32_t count;
+    fill_batch(p, job, s, out, past, batch, &done, place, &count);
+    result = paused(job) ? DSM_CANCELLED : count == 0 ? DSM_OK : trace_batch(job, s, samples, count * samples, &out->tally);
     for (uint32_t i = 0; i < count && result == DSM_OK; i++)
       result = paused(job) ? DSM_CANCELLED
                            : bake_pixel(job, &s->pixel, &s->sink, &limits, i * samples, samples, &out->stored,

@@ -9,6 +9,7 @@
 #define DSM_BAKE_BAKE_PASS_H
 
 #include "bake/bake_pixel.h"
+#include "bake/tile_boxes.h"
 #include "core/pixel_sample.h"
 #include "map/tile.h"
 #include "map/tile_shares.h"
@@ -30,6 +31,7 @@ typedef struct {
   vertices stored;
   vertices near_by;   /* of sparse_tile.c: the functions that one is averaged from */
   baked_pixel pixels[TILE_PIXELS];   /* vertices in `stored` */
+  tile_boxes boxes;   /* of this thread's tile, with `accuracy` */
   baked_share shares[MOST_SHARES];   /* of this thread's tile, whoever makes them */
 } bake_scratch;
 
@@ -44,8 +46,8 @@ typedef struct {
 typedef struct { uint8_t place[TILE_PIXELS]; uint32_t count; } place_list;
 _Static_assert(TILE_PIXELS <= 256, "a place is a byte");
 
-/* Bakes these pixels of a tile from `samples` rays each into scratch->pixels; with job->store, together with those who wait for the
- * tile. DSM_OK, DSM_CANCELLED if `pause` asked for it, DSM_NO_MEMORY, or what `trace` returned. Adds to `tally`. */
+/* Bakes these pixels of a tile from `samples` rays each into scratch->pixels, without those whose rays meet none of scratch->boxes, if there is
+ * `accuracy`: they are lit. With job->store, together with those who wait for the tile. DSM_OK, DSM_CANCELLED if `pause` asked for it, DSM_NO_MEMORY, or what `trace` returned. Adds to `tally`. */
 dsm_result bake_pass(const bake_job *job, bake_scratch *scratch, const tile_key *key, uint32_t samples,
                      const place_list *places, tile_tally *tally);
 void bake_scratch_free(bake_scratch *scratch);

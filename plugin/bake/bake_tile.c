@@ -10,8 +10,8 @@
 #include "map/pack_tile.h"
 
 /* Rays a pixel, before any of them tell how many more it takes. At the first level two find what there is to refine; in smooth volumes one
- * does. Of an edge, one ray in each of more pixels tells most (measured); but where all of a tile is wanted, it is full of things smaller
- * than a pixel, and their mean is what counts. */
+ * does. Of an edge, one ray in each of more pixels tells most (measured); but where all of a tile is full of things smaller
+ * than a pixel, their mean is what counts. */
 enum { FIRST_RAYS = 2, VOLUME_RAYS = 1, FILLED_RAYS = 4, PROBED = 4 };
 
 /* `accuracy` is the root mean square over a picture, most of which is lit, dark or smooth, and of which each image pixel averages look-ups,
@@ -89,7 +89,7 @@ static dsm_result bake_more(const bake_job *job, bake_scratch *s, const tile_key
   return result;
 }
 
-/* How many rays the pixels of a tile of the first level take, told by every PROBEDth of them in both directions. */
+/* How many rays the pixels of a tile take that is wanted as a whole, told by every PROBEDth of them in both directions. */
 static dsm_result probe(const bake_job *job, bake_scratch *s, const tile_key *key, const place_list *all, uint32_t *samples,
                         tile_tally *tally)
 {
@@ -126,7 +126,7 @@ static dsm_result choose_first_rays(const bake_job *job, bake_scratch *s, const 
                                     const need_limits *limits, uint32_t *samples, tile_tally *tally)
 {
   sparse_outcome outcome = SPARSE_NEVER;
-  uint32_t casters = casters_above(job, key, SPARSE_CASTERS + 1);
+  uint32_t casters = s->boxes.count;
   *samples = 0;
   dsm_result result = casters >= 1 && casters <= SPARSE_CASTERS ? bake_sparsely(job, s, key, all, casters, limits, &outcome, tally) : DSM_OK;
   if (result != DSM_OK || casters == 0 || outcome == SPARSE_DONE)
@@ -141,10 +141,15 @@ static dsm_result choose_rays(const bake_job *job, bake_scratch *s, const tile_k
                               const need_limits *limits, uint32_t *samples, tile_tally *tally)
 {
   dsm_result result = DSM_OK;
+  *samples = 0;
   if (key->level >= first_level(job->settings))
     result = choose_first_rays(job, s, key, all, limits, samples, tally);
-  else
-    *samples = 16 * all->count > 15 * TILE_PIXELS ? FILLED_RAYS : edge_rays(job->settings->accuracy);
+  else {
+    if (16 * all->count > 15 * TILE_PIXELS)
+      result = probe(job, s, key, all, samples, tally);
+    if (*samples < edge_rays(job->settings->accuracy))
+      *samples = edge_rays(job->settings->accuracy);
+  }
   if (*samples > job->settings->samples)
     *samples = job->settings->samples;
   return result;
@@ -160,6 +165,7 @@ static dsm_result bake_adaptively(const bake_job *job, bake_scratch *s, const ti
   int perspective = job->projection->perspective;
   need_limits limits = {perspective ? size : 0, perspective ? 0 : size, job->settings->accuracy,
                         key->level >= first_level(job->settings)};
+  tile_boxes_find(job, key, &s->boxes);
   dsm_result result = choose_rays(job, s, key, all, &limits, &samples, tally);
   if (result != DSM_OK || samples == 0)
     return result;
@@ -167,8 +173,10 @@ static dsm_result bake_adaptively(const bake_job *job, bake_scratch *s, const ti
     rays[all->place[k]] = samples;
   result = bake_pass(job, s, key, samples, all, tally);
   for (int added = 1; result == DSM_OK && added;) {
-    if (key->level > 0)
+    if (key->level > 0) {
       tile_need(s->pixels, &s->stored, &limits);
+      tile_boxes_want_finer(&s->boxes, job, key, limits.width, limits.width_at_least, s->pixels);
+    }
     result = bake_more(job, s, key, all, rays, &added, tally);
   }
   return result;

@@ -4,33 +4,12 @@
 #include <math.h>
 
 #include "bake/flat_ground.h"
-#include "core/box_outline.h"
 #include "core/compress_lattice.h"
 #include "core/rounding.h"
 
 /* Baked pixels along a side, from few to more. */
 static const uint32_t SIDES[] = {4, 8};
 enum { TRIES = sizeof SIDES / sizeof *SIDES };
-
-/* With more casters than that, looking at all their boxes would cost more than it spares. */
-enum { MOST_BOXES = 2000 };
-
-uint32_t casters_above(const bake_job *job, const tile_key *key, uint32_t most)
-{
-  if (!job->light || job->light->caster_count > MOST_BOXES)
-    return most;
-  const face *f = &job->projection->faces[key->face];
-  double size = ldexp(TILE_SIDE, (int)key->level), reach = ldexp(job->settings->filter_width, (int)key->level);
-  rectangle tile = {f->u0 + (key->x * size - reach) * f->pixel_u, f->v0 + (key->y * size - reach) * f->pixel_v,
-                    f->u0 + ((key->x + 1) * size + reach) * f->pixel_u, f->v0 + ((key->y + 1) * size + reach) * f->pixel_v};
-  uint32_t count = 0;
-  for (uint64_t i = 0; i < job->light->caster_count && count < most; i++) {
-    outline seen = OUTLINE_EMPTY;
-    outline_add(&seen, job->projection->origin, &f->axes, job->projection->perspective, &tile, &job->light->casters[i]);
-    count += seen.area.u0 <= seen.area.u1;
-  }
-  return count;
-}
 
 /* The pixels on the face are a rectangle from the tile's first one on. 0: that is too narrow. */
 static int make_grid(const place_list *whole, uint32_t side, sparse_grid *grid)

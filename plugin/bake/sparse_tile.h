@@ -12,9 +12,6 @@
 #include "bake/bake_pass.h"
 #include "bake/tile_need.h"
 
-/* How many casters have a box that light of this tile may meet: `most` if there are more, or nobody knows. */
-uint32_t casters_above(const bake_job *job, const tile_key *key, uint32_t most);
-
 /* The most for which a tile may be sparse: a volume, and the ground under it. */
 enum { SPARSE_CASTERS = 2 };
 

@@ -258,6 +258,16 @@ static unsigned char need_of(double times)
   return times > 1 ? (unsigned char)fmin(NEED_MOST, 1 + NEED_OCTAVE * log2(times)) : 0;
 }
 
+/* Whether finer levels would be marked there, too: look-ups are ray-traced in any case. */
+static int is_amid_marks(const baked_pixel pixels[TILE_PIXELS], uint32_t place)
+{
+  tile_patch patch = tile_around(place);
+  for (uint32_t k = 0; k < patch.count; k++)
+    if (!pixels[patch.place[k]].marked)
+      return 0;
+  return 1;
+}
+
 void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const need_limits *limits)
 {
   double depths[DEPTHS], most[TILE_PIXELS], share = BEND_SHARE * limits->aim, least = share * share;
@@ -281,7 +291,7 @@ void tile_need(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const ne
   if (limits->first)
     keep_rough(pixels, stored, limits, least, most);
   for (uint32_t i = 0; i < TILE_PIXELS; i++) {
-    pixels[i].need = pixels[i].marked ? NEED_ALWAYS : 0;
+    pixels[i].need = pixels[i].marked && !is_amid_marks(pixels, i) ? NEED_ALWAYS : 0;
     if (is_known(&pixels[i]) && is_bent(most, i, least))
       pixels[i].need = need_of(around(pixels, most, i) / least);
   }

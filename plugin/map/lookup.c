@@ -55,6 +55,13 @@ static dsm_result add_footprint(view *v, const footprint *f)
   return result == DSM_OK && f->coarser > 0 ? add_level(v, f, f->level + 1, v->at->weight * f->coarser) : result;
 }
 
+/* The finest level for points without a footprint. */
+static uint32_t blind_level(const dsm_map *map)
+{
+  uint32_t least = map->first_level > BLIND_LEVELS ? map->first_level - BLIND_LEVELS : 0;
+  return map->explored_level > least ? map->explored_level : least;
+}
+
 /* How far outside the face the point lies, pixels; less than 0: inside. */
 static double distance_beside(const view *v)
 {
@@ -86,11 +93,14 @@ static footprint choose(const view *v, int has_footprint)
     return alone && has_footprint && map->blur == 0 ? footprint_in_rows(f) : f;
   }
   footprint f = footprint_of(&region, most, has_footprint ? REFINED_PROBES : 1);
+  footprint own = f;
   f = footprint_scaled(f, has_footprint ? map->coarser * (alone || map->blur > 0 ? 1 : IN_CUBES) : 1, most);
+  if (f.level >= map->first_level)   /* coarser pixels cost nothing, and spare nothing */
+    f = own.level >= map->first_level ? own : (footprint){map->first_level, 0, own.probes, own.step_x, own.step_y, 0, 0};
   if (!alone)
     f = (footprint){f.level, f.coarser, 1, 0, 0, 0, 0};   /* beside the face a look-up would find nothing */
-  if (!has_footprint && f.level + BLIND_LEVELS < map->first_level)
-    f = (footprint){map->first_level - BLIND_LEVELS, 0, 1, 0, 0, 0, 0};
+  if (!has_footprint && f.level < blind_level(map))
+    f = (footprint){blind_level(map), 0, 1, 0, 0, 0, 0};
   return f;
 }
 
@@ -144,13 +154,7 @@ static dsm_result look_up(dsm_worker *worker, const dsm_receiver *receiver, doub
   projected hits[3];
   uint32_t count = projection_find(&map->projection, receiver->point, reach_of(map, receiver->has_footprint != 0), hits);
   view v;
-  v.worker = worker;
-  v.receiver = receiver;
-  v.lost_grey = 0;
-  v.lost = rgb_grey(0);
-  v.blind = 0;
-  v.plane_count = receiver->plane_count;
-  v.automatic = map->settings.bias < 0;
+  view_begin(&v, worker, receiver);
   for (uint32_t i = 0; i < count; i++) {
     v.at = &hits[i];
     v.own_rounding = hits[i].depth * 0x1p-49;   /* some roundings of a double */

@@ -29,6 +29,13 @@ typedef struct map_saving {
   void (*destroy)(struct map_saving *saving);
 } map_saving;
 
+/* With `accuracy`: what has been seen of the picture before the first look-up; see explore.h. */
+typedef struct {
+  double squares;   /* sum of what the first level's errors would be if its pixels were as wide as the footprints */
+  double octaves;   /* sum of the footprints' widths in pixels of the first level, as logarithms of 2 */
+  uint64_t looked;  /* how many there were */
+} exploration;
+
 struct dsm_map {
   dsm_host host;
   dsm_light light;         /* direction of unit length */
@@ -39,6 +46,8 @@ struct dsm_map {
   uint32_t blur_level;     /* the coarsest level that it needs */
   uint32_t first_level;    /* this level and all finer ones are baked, each tile for itself; coarser ones are averages */
   double coarser;          /* with `accuracy`: see footprint_coarser */
+  exploration explored;
+  uint32_t explored_level; /* what camera rays read then, on average; 0: not known */
   tile_store store;
   tile_source *source;     /* NULL: tiles are baked; set before the first look-up */
   map_saving *saving;      /* NULL: the map is not going to be saved */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 #include "map/view.h"
 
+#include <math.h>
+
 /* From the first places where a finer level counts, NEED_SHARE, to those where all of it does. */
 static const double NEED_FADES = 0.25;
 
@@ -26,8 +28,8 @@ static double need_of(const wish *w)
   return w->share > NEED_SHARE ? fmin(1, (w->share - NEED_SHARE) / NEED_FADES) * fmin(1, w->octaves / w->share) : 0;
 }
 
-/* How much the place wants a finer level than this one, from 0 to 1: interpolated, so that no seam shows where levels meet. */
-static dsm_result need_at(view *v, uint32_t level, double x, double y, double *need)
+/* What is wanted of a finer level than this one there: of the four pixels around it. */
+static dsm_result wish_at(view *v, uint32_t level, double x, double y, wish *sum)
 {
   const face *f = &v->worker->map->projection.faces[v->at->face];
   uint32_t width = level_pixels(f->width, level), height = level_pixels(f->height, level);
@@ -39,7 +41,7 @@ static dsm_result need_at(view *v, uint32_t level, double x, double y, double *n
   const double weight[4] = {(1 - across) * (1 - up), across * (1 - up), (1 - across) * up, across * up};
   tile_key last = {v->at->face, level, UINT32_MAX, UINT32_MAX};
   const tile *t = NULL;
-  wish sum = {0, 0, 0};
+  *sum = (wish){0, 0, 0};
   for (uint32_t k = 0; k < 4; k++) {
     uint32_t px = (uint32_t)i + (k & 1), py = (uint32_t)j + (k >> 1);
     if (px >= width || py >= height || weight[k] == 0)
@@ -51,10 +53,19 @@ static dsm_result need_at(view *v, uint32_t level, double x, double y, double *n
         return result;
       last = key;
     }
-    add_wish(&sum, t, px, py, weight[k]);
+    add_wish(sum, t, px, py, weight[k]);
   }
-  *need = need_of(&sum);
   return DSM_OK;
+}
+
+/* How much that is, from 0 to 1: interpolated, so that no seam shows where levels meet. */
+static dsm_result need_at(view *v, uint32_t level, double x, double y, double *need, int *always)
+{
+  wish sum;
+  dsm_result result = wish_at(v, level, x, y, &sum);
+  *need = result == DSM_OK ? need_of(&sum) : 0;
+  *always = sum.always;
+  return result;
 }
 
 /* What one level alone says is lost. */
@@ -91,10 +102,11 @@ dsm_result view_add_refined(view *v, const footprint *f, double x, double y, dou
   for (uint32_t level = v->worker->map->first_level; share > 0; level--) {
     double need = 0, grey, blind = v->blind;
     rgb coloured;
-    dsm_result result = level > f->level ? need_at(v, level, x, y, &need) : DSM_OK;
+    int always = 0;
+    dsm_result result = level > f->level ? need_at(v, level, x, y, &need, &always) : DSM_OK;
     if (result == DSM_OK)
       result = read_level(v, level, x, y, &grey, &coloured);
-    if (result == DSM_OK)
+    if (result == DSM_OK && !always)
       need *= in_question(v, grey, coloured);
     if (level == f->level + 1)
       need *= 1 - f->coarser;
@@ -111,4 +123,24 @@ dsm_result view_add_refined(view *v, const footprint *f, double x, double y, dou
     share *= need;
   }
   return DSM_OK;
+}
+
+dsm_result view_first_error(view *v, uint32_t least, double x, double y, double *squared)
+{
+  uint32_t level = v->worker->map->first_level;
+  double aim = v->worker->map->settings.accuracy, grey, blind = v->blind;
+  rgb coloured;
+  wish sum;
+  *squared = 0;
+  dsm_result result = wish_at(v, level, x, y, &sum);
+  while (result == DSM_OK && sum.always && level > least)
+    result = wish_at(v, --level, x, y, &sum);
+  if (result == DSM_OK && sum.share > 0 && !sum.always)
+    result = read_level(v, level, x, y, &grey, &coloured);
+  else
+    return result;
+  v->blind = blind;
+  if (result == DSM_OK)
+    *squared = sum.share * exp2(sum.octaves / sum.share) * aim * aim * in_question(v, grey, coloured) * (double)(1u << (v->worker->map->first_level - level));
+  return result == DSM_TRACE ? DSM_OK : result;   /* then there is no error */
 }

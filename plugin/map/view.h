@@ -30,6 +30,17 @@ typedef struct {
   delta_word_shape deltas;   /* of that tile, if it has deltas */
 } view;
 
+static inline void view_begin(view *v, dsm_worker *worker, const dsm_receiver *receiver)
+{
+  v->worker = worker;
+  v->receiver = receiver;
+  v->lost_grey = 0;
+  v->lost = rgb_grey(0);
+  v->blind = 0;
+  v->plane_count = receiver->plane_count;
+  v->automatic = worker->map->settings.bias < 0;
+}
+
 /* Less light than this is not worth a ray; so a surface that sees no more than twice as much is in no doubt. */
 #define VIEW_LEAST 1e-3
 
@@ -53,5 +64,9 @@ void view_see_planes(view *v, const footprint *f, uint32_t level);
 /* Reads a map with `accuracy` at one place: from its first level on as fine as the place wants, but no finer than the footprint
  * asks for. Where a level cannot tell an occluder from the surface that it touches, a finer one may. */
 dsm_result view_add_refined(view *v, const footprint *f, double x, double y, double share);
+
+/* The squared error that the first level alone would make at a place, as its tiles tell; where it wants a finer one always, that of the next,
+ * but not finer than `least`, with pixels as wide as those of the first. */
+dsm_result view_first_error(view *v, uint32_t least, double x, double y, double *squared);
 
 #endif

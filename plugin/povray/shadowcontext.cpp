@@ -73,6 +73,15 @@ void ShadowContext::BakeTile(size_t map, const dsm_tiles& tile)
 		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
 }
 
+void ShadowContext::Explore(size_t map, const dsm_receiver& receiver)
+{
+	const dsm_result result = ShadowPlugin::Api().explore(workers[map].worker, &receiver);
+
+	PassOnFailure();
+	if(result == DSM_NO_MEMORY)
+		throw POV_EXCEPTION_CODE(kOutOfMemoryErr);
+}
+
 double ShadowContext::BakeWork(size_t map) const
 {
 	dsm_statistics s = { 0 };

@@ -54,6 +54,9 @@ class ShadowContext
 		void TilesWanted(size_t map, const dsm_receiver& receiver, void (*wanted)(void *data, const dsm_tiles *tiles), void *data);
 		void BakeTile(size_t map, const dsm_tiles& tile);
 
+		/// A place of the picture, for a map that chooses by itself how fine it is.
+		void Explore(size_t map, const dsm_receiver& receiver);
+
 		/// What baking a map has cost; all of it while this is the only context that bakes.
 		double BakeWork(size_t map) const;
 

@@ -161,7 +161,7 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 		return maps.Unshadowed() || ((survey != NULL) && !survey->Tracing());
 	if((survey != NULL) && survey->Tracing())
 		return false;
-	if((survey != NULL) && !maps.IsUndecided(index))
+	if((survey != NULL) && !maps.IsUndecided(index) && !maps[index].explores)
 		return true;
 
 	const ShadowMap& map = maps[index];
@@ -179,6 +179,11 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 	receiver.has_footprint = shadowReceiver.surface.seenByCamera;
 	if(receiver.has_footprint)
 		FindShadowFootprint(point);
+	if((survey != NULL) && map.explores)
+	{
+		survey->Explore(index, receiver);
+		return true;
+	}
 	if(survey != NULL)
 	{
 		survey->Request(index, receiver, lightsource, depth, lightsourceray, point, colour, ticket);

@@ -210,6 +210,7 @@ bool ShadowMaps::Create(const LightSource& light, const ShadowSettings& settings
 	entry.savePath = settings.savePath;
 	entry.choice = (entry.deep && !settings.IsBlurred() && !settings.IsRefined() && entry.loadPath.empty() && entry.savePath.empty() && !AlwaysMaps()) ? ShadowMap::kOpen : ShadowMap::kNone;
 	entry.cost = 0.0;
+	entry.explores = entry.deep && settings.IsRefined();
 	maps.push_back(entry);
 	return true;
 }
@@ -235,7 +236,7 @@ void ShadowMaps::AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads
 			threads.push_back(static_cast<ViewThreadData *>(queue.AppendTask(new ShadowBakeTask(viewData))));
 		queue.AppendSync();
 	}
-	if(HasUndecided())
+	if(HasUndecided() || Explores())
 	{
 		const ShadowSampling sampling = { method, threshold, depth };
 		threads.push_back(static_cast<ViewThreadData *>(queue.AppendTask(new ShadowSurveyTask(viewData, sampling))));
@@ -249,6 +250,21 @@ bool ShadowMaps::HasUndecided() const
 		if(IsUndecided(i))
 			return true;
 	return false;
+}
+
+bool ShadowMaps::Explores() const
+{
+	for(size_t i = 0; i < maps.size(); i++)
+		if(maps[i].explores)
+			return true;
+	return false;
+}
+
+void ShadowMaps::Explored(POV_ULONG cameraRays, double raysAcross)
+{
+	for(size_t i = 0; i < maps.size(); i++)
+		if(maps[i].explores)
+			ShadowPlugin::Api().explored(maps[i].map.get(), cameraRays, raysAcross);
 }
 
 string ShadowMaps::Times(double cost)

@@ -26,6 +26,7 @@ struct ShadowMap
 	bool photons;     ///< receivers of photons from this light are ray-traced
 	bool atmosphere;  ///< fog and atmospheric media dim this light, and are multiplied in at the look-up
 	bool deep;        ///< else it holds one depth a pixel
+	bool explores;    ///< wants to see a few places of the picture before it is asked
 	string loadPath, savePath; ///< empty: no file
 	bool HasFile() const { return !loadPath.empty() || !savePath.empty(); }
 
@@ -69,6 +70,8 @@ class ShadowMaps
 		/// Lights that may be ray-traced instead, if that costs less. Decided once, before the first look-up, by one thread.
 		bool IsUndecided(size_t map) const { return maps[map].choice == ShadowMap::kOpen; }
 		bool HasUndecided() const;
+		bool Explores() const;
+		void Explored(POV_ULONG cameraRays, double raysAcross);
 		void Decide(size_t map, bool useMap, double cost);
 
 		/// How many of the finest tiles a map has.

@@ -26,6 +26,9 @@ namespace
 const double kPixelsPerSample = 512.0;
 const unsigned int kFewestSamples = 100, kMostSamples = 1000;
 
+/// Where maps want to see the picture: edges take little of it, and too few samples would miss them.
+const double kPixelsPerPlace = 16.0;
+
 /// The first judgement comes after so many samples, and the next ones after twice as many as the last.
 const unsigned int kFirstJudgement = 16;
 
@@ -122,6 +125,12 @@ void ShadowSurvey::Request(size_t map, const dsm_receiver& receiver, const Light
 		tallies[map].AddRequest(ShadowWorkOf(stats) - middle, middle - before);
 }
 
+void ShadowSurvey::Explore(size_t map, const dsm_receiver& receiver)
+{
+	if(counting)
+		shadowReceiver.context->Explore(map, receiver);
+}
+
 void ShadowSurveyMedia::ComputeMedia(vector<Media>& source, const Ray& ray, Intersection& isect, Colour& colour, Trace::TraceTicket& ticket)
 {
 	if(!source.empty())
@@ -169,17 +178,19 @@ void ShadowSurveyTask::Run()
 	ShadowMaps& maps = *GetSceneData()->shadowMaps;
 	const POVRect area(GetViewData()->GetRenderArea());
 	const double pixels = double(area.GetWidth()) * area.GetHeight();
-	const unsigned int samples = max(1.0, min(pixels / 8.0, max(double(kFewestSamples), min(double(kMostSamples), pixels / kPixelsPerSample))));
+	const bool explores = maps.Explores();
+	const unsigned int samples = max(1.0, min(pixels / 8.0, max(double(kFewestSamples), min(double(kMostSamples), pixels / (explores ? kPixelsPerPlace : kPixelsPerSample)))));
 	unsigned int judgement = kFirstJudgement;
 
-	for(unsigned int i = 0; (i < samples) && maps.HasUndecided(); i++)
+	for(unsigned int i = 0; (i < samples) && (explores || maps.HasUndecided()); i++)
 	{
 		const int x = area.left + int(Fraction(0.5 + i * 0.7548776662466927) * area.GetWidth());
 		const int y = area.top + int(Fraction(0.5 + i * 0.5698402909980532) * area.GetHeight());
 		const int beside = (x < int(area.right)) ? x + 1 : max(x - 1, int(area.left));
 
 		survey.BeginSample();
-		survey.TracePixelAt(beside, y, false);
+		if(maps.HasUndecided())
+			survey.TracePixelAt(beside, y, false);
 		survey.TracePixelAt(x, y, true);
 		Cooperate();
 
@@ -191,6 +202,8 @@ void ShadowSurveyTask::Run()
 				Judge(map, i + 1, last ? 1.0 : max(1.0, kFirstConfidence / sqrt(double(judgement) / kFirstJudgement)));
 		judgement *= 2;
 	}
+
+	maps.Explored(samples, 1.0 / sampling.Spacing());
 
 	// the statistics are of the image
 	GetViewDataPtr()->Stats() = RenderStatistics();

@@ -47,6 +47,9 @@ class ShadowSurvey : public TracePixel
 		/// A shadow ray is traced by the survey itself: it is not to be asked about once more.
 		bool Tracing() const { return tracing; }
 
+		/// A look-up in a map that wants to know the picture.
+		void Explore(size_t map, const dsm_receiver& receiver);
+
 		/// A shadow ray towards a light that has a choice. To be called by the look-up.
 		void Request(size_t map, const dsm_receiver& receiver, const LightSource& light, double depth, const Ray& ray, const Vector3d& point, RGBColour& colour, TraceTicket& ticket);
 	private:

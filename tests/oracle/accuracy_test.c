@@ -77,9 +77,16 @@ static double pixel_of(stage *s, double x, double y, int c) {
 
 /* Root mean square over random image pixels, and the rays that it took. The frame of a parallel light looks along z; a shadow lies
  * below its caster. */
-static double error_of(const shape *shapes, int count, const char *const *words, uint64_t *rays) {
+static double error_after(const shape *shapes, int count, const char *const *words, int explored, uint64_t *rays) {
+  enum { PLACES = 600 };
   stage s;
   stage_open(&s, shapes, count, sun(), words);
+  rng places = rng_seeded(4321);
+  for (int i = 0; i < PLACES && explored; ++i) {
+    dsm_receiver at = receiver_at(rng_between(&places, -2, 2), rng_between(&places, -2, 2));
+    assert_int_equal(dsm_api.explore(s.worker, &at), DSM_OK);
+  }
+  if (explored) dsm_api.explored(s.map, PLACES, RAYS);
   rng r = rng_seeded(1234);
   const int points = UNLESS_SLOW(POINTS, 300);
   double squares = 0;
@@ -95,6 +102,10 @@ static double error_of(const shape *shapes, int count, const char *const *words,
   stage_close(&s);
   *rays = got.rays;
   return sqrt(squares / points);
+}
+
+static double error_of(const shape *shapes, int count, const char *const *words, uint64_t *rays) {
+  return error_after(shapes, count, words, 0, rays);
 }
 
 static void it_is_as_accurate_as_it_says(void **state) {
@@ -113,6 +124,25 @@ static void it_is_as_accurate_as_it_says(void **state) {
       assert_true(4 * rays < even);
     }
   }
+}
+
+/* A map that has seen a few places of the picture keeps to the aim with fewer rays, and never takes more. */
+static void seen_pictures_cost_less(void **state) {
+  (void)state;
+  uint64_t total[2] = {0, 0};
+  for (int k = 0; k < SCENES; ++k) {
+    shape shapes[MOST];
+    int count = make_scene(k, shapes);
+    uint64_t rays[2];
+    double error[2];
+    for (int explored = 0; explored < 2; ++explored) error[explored] = error_after(shapes, count, WORDS("accuracy 0.01"), explored, &rays[explored]);
+    print_message("scene %d: %.5f from %llu rays, explored %.5f from %llu\n", k, error[0], (unsigned long long)rays[0], error[1], (unsigned long long)rays[1]);
+    assert_true(error[1] <= 0.01);
+    assert_true(rays[1] <= rays[0]);
+    total[0] += rays[0];
+    total[1] += rays[1];
+  }
+  assert_true(total[1] < total[0]);
 }
 
 /* Two points that are next to each other see nearly the same, wherever levels meet: across 0.004 of an image pixel light changes
@@ -188,6 +218,7 @@ static void nothing_is_missing(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_is_as_accurate_as_it_says),
+    cmocka_unit_test(seen_pictures_cost_less),
     cmocka_unit_test(no_seams),
     cmocka_unit_test(order_does_not_matter),
     cmocka_unit_test(nothing_is_missing),

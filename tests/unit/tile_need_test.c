@@ -112,7 +112,7 @@ static void an_edge_at_the_border_wants_more(void **state) {
     else if (i / TILE_SIDE > 0 && i / TILE_SIDE < TILE_SIDE - 1 && i % TILE_SIDE < TILE_SIDE - 1) assert_int_equal(pixels[i].need, 0);
 }
 
-/* What is not known is asked for where light can grow, not where nobody looks, and bends nothing next to it. */
+/* What is not known is asked for where light can grow, but not amid such pixels, nor where nobody looks, and bends nothing next to it. */
 static void unknown_pixels(void **state) {
   (void)state;
   begin();
@@ -121,7 +121,10 @@ static void unknown_pixels(void **state) {
     else if (i / TILE_SIDE < 8) pixels[i].absent = 1;
     else pixels[i].marked = 1;
   tile_need(pixels, &stored, &LIMITS);
-  for (uint32_t i = 0; i < TILE_PIXELS; ++i) assert_int_equal(pixels[i].need, pixels[i].marked ? NEED_ALWAYS : 0);
+  for (uint32_t i = 0; i < TILE_PIXELS; ++i) {
+    int rim = i % TILE_SIDE == 8 || i / TILE_SIDE == 8;
+    assert_int_equal(pixels[i].need, pixels[i].marked && rim ? NEED_ALWAYS : 0);
+  }
 }
 
 /* Noise is known to be there: bends of that size are expected. */
