@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 
 #include <algorithm>
+#include <typeinfo>
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
@@ -8,6 +9,7 @@
 #include "backend/interior/media.h"
 #include "backend/math/vector.h"
 #include "backend/scene/objects.h"
+#include "backend/shape/planes.h"
 #include "backend/shadow/shadowcasters.h"
 #include "backend/shadow/shadowthreads.h"
 
@@ -27,6 +29,8 @@ const double kOutsizedFactor = 10.0;
 
 /// POV-Ray keeps boxes in floats and lets infinite objects have a box of this order.
 const double kInfiniteLength = 1.0e9;
+
+const double kSameSurface = 1.0e-3; // as SHADOW_TOLERANCE in trace.cpp
 
 const size_t kCacheLine = 64; // bytes
 
@@ -49,6 +53,21 @@ bool BoxOf(const ObjectBase *object, dsm_box& box)
 		box.high[i] = low + length + slack;
 	}
 	return true;
+}
+
+/// Whether an unmapped caster may be met between the ends of a ray. Most are grounds, and most light comes to them from one side.
+bool MayMeet(const ObjectBase& caster, const Ray& ray, double depth)
+{
+	if((typeid(caster) != typeid(Plane)) || (caster.Trans != NULL))
+		return true;
+
+	const Plane& plane = static_cast<const Plane&>(caster);
+	DBL height, climb;
+	VDot(height, plane.Normal_Vector, ray.Origin);
+	VDot(climb, plane.Normal_Vector, ray.Direction);
+	height += plane.Distance;
+	// half of what is the same hit: rounding must not decide
+	return !((height + 0.5 * kSameSurface * climb) * (height + depth * climb) > 0.0);
 }
 
 double HalfDiagonal(const dsm_box& box)
@@ -249,6 +268,14 @@ void ShadowCasters::SplitOffOutsized()
 	}
 	objects.swap(keptObjects);
 	boxes.swap(keptBoxes);
+}
+
+bool ShadowCasters::MayMeetUnmapped(const Ray& ray, double depth) const
+{
+	for(vector<ObjectPtr>::const_iterator caster(unmapped.begin()); caster != unmapped.end(); caster++)
+		if(MayMeet(**caster, ray, depth))
+			return true;
+	return false;
 }
 
 bool ShadowCasters::IsUnmapped(const ObjectBase *object) const

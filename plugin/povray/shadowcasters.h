@@ -27,6 +27,8 @@ class ShadowCasters
 		/// Objects without end, and objects so much larger than all others that a map framed to them would lose the rest.
 		const vector<ObjectPtr>& Unmapped() const { return unmapped; }
 		bool IsUnmapped(const ObjectBase *object) const;
+		/// Whether any of them can lie on a shadow ray. What is cheaper to tell than to trace.
+		bool MayMeetUnmapped(const Ray& ray, double depth) const;
 
 		/// Whether an inside takes light.
 		static bool Dims(const Interior *interior);

@@ -12,7 +12,6 @@
 #include "backend/scene/scene.h"
 #include "backend/scene/threaddata.h"
 #include "backend/shape/cones.h"
-#include "backend/shape/planes.h"
 #include "backend/shadow/shadowcontext.h"
 #include "backend/shadow/shadowmaps.h"
 #include "backend/shadow/shadowsurvey.h"
@@ -99,29 +98,6 @@ void BoxPlane(const BBOX& box, const Vector3d& point, const Vector3d& toLight, d
 	plane.rise = max(rise, 0.0);
 }
 
-/// Whether an unmapped caster may be met between the ends of a ray. Most are grounds, and most light comes to them from one side.
-bool MayMeet(const ObjectBase& caster, const Ray& ray, double depth)
-{
-	if((typeid(caster) != typeid(Plane)) || (caster.Trans != NULL))
-		return true;
-
-	const Plane& plane = static_cast<const Plane&>(caster);
-	DBL height, climb;
-	VDot(height, plane.Normal_Vector, ray.Origin);
-	VDot(climb, plane.Normal_Vector, ray.Direction);
-	height += plane.Distance;
-	// half of what is the same hit: rounding must not decide
-	return !((height + 0.5 * kSameHit * climb) * (height + depth * climb) > 0.0);
-}
-
-bool MayMeetAny(const vector<ObjectPtr>& casters, const Ray& ray, double depth)
-{
-	for(vector<ObjectPtr>::const_iterator caster(casters.begin()); caster != casters.end(); caster++)
-		if(MayMeet(**caster, ray, depth))
-			return true;
-	return false;
-}
-
 }
 
 /// Where the receiver's own surface can be. Surfaces that are in no map need no bias at all.
@@ -195,7 +171,7 @@ bool Trace::LookUpShadow(const LightSource& lightsource, double depth, const Ray
 	colour.red() *= rgb[0];
 	colour.green() *= rgb[1];
 	colour.blue() *= rgb[2];
-	if(MayMeetAny(maps.Casters().Unmapped(), lightsourceray, depth))
+	if(maps.Casters().MayMeetUnmapped(lightsourceray, depth))
 		TraceUnmappedCasters(maps.Casters().Unmapped(), lightsource, depth, lightsourceray, colour, ticket);
 	if(map.atmosphere && (depth > kSameHit))
 	{

@@ -107,7 +107,7 @@ void ShadowSurvey::Request(size_t map, const dsm_receiver& receiver, const Light
 	shadowReceiver.context->TilesWanted(map, receiver, &ShadowSurvey::Want, &tallies[map]);
 
 	const double before = ShadowWorkOf(stats);
-	if(counting && !casters.Unmapped().empty())
+	if(counting && casters.MayMeetUnmapped(ray, depth))
 		TraceUnmappedCasters(casters.Unmapped(), light, depth, ray, left, ticket);
 	if(counting && maps[map].atmosphere)
 	{
