@@ -46,8 +46,9 @@ typedef struct {
 typedef struct { uint8_t place[TILE_PIXELS]; uint32_t count; } place_list;
 _Static_assert(TILE_PIXELS <= 256, "a place is a byte");
 
-/* Bakes these pixels of a tile from `samples` rays each into scratch->pixels, without those whose rays meet none of scratch->boxes, if there is
- * `accuracy`: they are lit. With job->store, together with those who wait for the tile. DSM_OK, DSM_CANCELLED if `pause` asked for it, DSM_NO_MEMORY, or what `trace` returned. Adds to `tally`. */
+/* Bakes these pixels of a tile from `samples` rays each into scratch->pixels. With `accuracy`, pixels whose rays meet none of
+ * scratch->boxes are lit, and none of their rays is traced. With job->store, together with those who wait for the tile. DSM_OK, DSM_CANCELLED if
+ * `pause` asked for it, DSM_NO_MEMORY, or what `trace` returned. Adds to `tally`. */
 dsm_result bake_pass(const bake_job *job, bake_scratch *scratch, const tile_key *key, uint32_t samples,
                      const place_list *places, tile_tally *tally);
 void bake_scratch_free(bake_scratch *scratch);

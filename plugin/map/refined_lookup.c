@@ -127,20 +127,22 @@ dsm_result view_add_refined(view *v, const footprint *f, double x, double y, dou
 
 dsm_result view_first_error(view *v, uint32_t least, double x, double y, double *squared)
 {
-  uint32_t level = v->worker->map->first_level;
-  double aim = v->worker->map->settings.accuracy, grey, blind = v->blind;
+  const dsm_map *map = v->worker->map;
+  uint32_t level = map->first_level;
+  double aim = map->settings.accuracy, blind = v->blind, grey;
   rgb coloured;
   wish sum;
   *squared = 0;
   dsm_result result = wish_at(v, level, x, y, &sum);
   while (result == DSM_OK && sum.always && level > least)
     result = wish_at(v, --level, x, y, &sum);
-  if (result == DSM_OK && sum.share > 0 && !sum.always)
-    result = read_level(v, level, x, y, &grey, &coloured);
-  else
+  if (result != DSM_OK || !(sum.share > 0) || sum.always)
     return result;
+  result = read_level(v, level, x, y, &grey, &coloured);
   v->blind = blind;
-  if (result == DSM_OK)
-    *squared = sum.share * exp2(sum.octaves / sum.share) * aim * aim * in_question(v, grey, coloured) * (double)(1u << (v->worker->map->first_level - level));
-  return result == DSM_TRACE ? DSM_OK : result;   /* then there is no error */
+  if (result != DSM_OK)
+    return result == DSM_TRACE ? DSM_OK : result;   /* a ray makes no error */
+  double made = sum.share * exp2(sum.octaves / sum.share) * aim * aim;
+  *squared = made * in_question(v, grey, coloured) * ldexp(1, (int)(map->first_level - level));
+  return DSM_OK;
 }
