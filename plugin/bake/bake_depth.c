@@ -17,7 +17,7 @@ static dsm_ray make_ray(const bake_job *job, const tile_key *key, uint32_t x, ui
   if (job->settings->jittered) {
     pixel_point first;
     pixel_sample_path(1, &first);
-    pixel_sample_offset(&whole_pixel, pixel_sample_seed(key->face, x, y), first, offset);
+    pixel_sample_offsets(&whole_pixel, pixel_sample_seed(key->face, x, y), &first, 1, &offset);
   }
   projection_ray(job->projection, key->face, x + 0.5 + offset[0], y + 0.5 + offset[1], &ray);
   return ray;

@@ -9,6 +9,8 @@
 /* Of a batch, at most unless one pixel has more: a quarter of a megabyte. Of a share, at least: enough for a host to sort its objects by. */
 enum { BATCH_RAYS = 4096, SHARE_RAYS = 1024 };
 
+enum { RAYS_AT_ONCE = 16 };
+
 static int paused(const bake_job *job)
 {
   return job->host->pause && job->host->pause(job->host_data);
@@ -46,11 +48,15 @@ static void make_rays(const bake_job *job, const tile_key *key, uint32_t place, 
   pixel_filter filter = {job->settings->filter, job->settings->filter_width};
   uint32_t x = key->x * TILE_SIDE + place % TILE_SIDE, y = key->y * TILE_SIDE + place / TILE_SIDE;
   pixel_seed seed = pixel_sample_seed(key->face + MAX_FACES * key->level, x, y);
-  double size = ldexp(1, (int)key->level);
-  for (uint32_t i = 0; i < samples; i++) {
-    double offset[2];
-    pixel_sample_offset(&filter, seed, path[i], offset);
-    projection_ray(job->projection, key->face, size * (x + 0.5 + offset[0]), size * (y + 0.5 + offset[1]), &rays[i]);
+  double size = ldexp(1, (int)key->level), at[RAYS_AT_ONCE][2];
+  for (uint32_t i = 0, count; i < samples; i += count) {
+    count = samples - i < RAYS_AT_ONCE ? samples - i : RAYS_AT_ONCE;
+    pixel_sample_offsets(&filter, seed, path + i, count, at);
+    for (uint32_t k = 0; k < count; k++) {
+      at[k][0] = size * (x + 0.5 + at[k][0]);
+      at[k][1] = size * (y + 0.5 + at[k][1]);
+    }
+    projection_rays(job->projection, key->face, at, count, rays + i);
   }
 }
 

@@ -3,15 +3,25 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/hash.h"
 
-static inline uint32_t reverse_bits(uint32_t x)
+/* Two points at a time: x, y, x, y. */
+typedef uint32_t lanes __attribute__((vector_size(16)));
+
+static inline lanes reverse_bits_of_all(lanes x)
 {
-  x = __builtin_bswap32(x);
-  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
-  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+  x = x << 16 | x >> 16;
+  x = (x & 0x00ff00ffu) << 8 | (x >> 8 & 0x00ff00ffu);
+  x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
+  x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+  return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+}
+
+static uint32_t reverse_bits(uint32_t x)
+{
+  return reverse_bits_of_all((lanes){x})[0];
 }
 
 /* Second dimension of Sobol' (the first is reverse_bits): column i of Pascal's triangle modulo 2. */
@@ -26,15 +36,15 @@ static uint32_t sobol_second(uint32_t index)
 
 /* Nested uniform scrambling of a reversed number by a hash in which each bit depends on lower bits only:
  * Laine and Karras 2011, as used by Burley 2020, with the better constants of Vegdahl 2021. */
-static uint32_t scramble(uint32_t reversed, uint32_t seed)
+static inline lanes scramble(lanes reversed, lanes seed)
 {
-  uint32_t x = reversed;
+  lanes x = reversed;
   x ^= x * 0x3d20adeau;
   x += seed;
-  x *= (seed >> 16) | 1u;
+  x *= seed >> 16 | 1u;
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
-  return reverse_bits(x);
+  return reverse_bits_of_all(x);
 }
 
 pixel_seed pixel_sample_seed(uint32_t face, uint32_t x, uint32_t y)
@@ -77,12 +87,41 @@ double pixel_filter_inverse(filter_kind kind, double u)
   return 2 * u - 1;
 }
 
-void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, pixel_point point, double offset[2])
+/* Whole numbers as the middles of their boxes in [0,1]. */
+static inline void put_numbers(lanes x, double numbers[4])
 {
-  double u = ((double)scramble(point.x, seed.x) + 0.5) * 0x1p-32;
-  double v = ((double)scramble(point.y, seed.y) + 0.5) * 0x1p-32;
-  offset[0] = 0.5 * filter->width * pixel_filter_inverse(filter->kind, u);
-  offset[1] = 0.5 * filter->width * pixel_filter_inverse(filter->kind, v);
+  typedef int32_t signed_lanes __attribute__((vector_size(16)));
+  typedef double quad __attribute__((vector_size(32)));
+  quad u = (__builtin_convertvector((signed_lanes)(x ^ 0x80000000u), quad) + (0x1p31 + 0.5)) * 0x1p-32;
+  memcpy(numbers, &u, sizeof u);
+}
+
+static inline void filter_numbers(const pixel_filter *filter, double *numbers, uint32_t count)
+{
+  double half = 0.5 * filter->width;
+  if (filter->kind == FILTER_BOX)
+    for (uint32_t i = 0; i < count; i++)
+      numbers[i] = half * (2 * numbers[i] - 1);
+  else
+    for (uint32_t i = 0; i < count; i++)
+      numbers[i] = half * pixel_filter_inverse(filter->kind, numbers[i]);
+}
+
+void pixel_sample_offsets(const pixel_filter *filter, pixel_seed seed, const pixel_point *points, uint32_t count,
+                          double (*offsets)[2])
+{
+  lanes seeds = {seed.x, seed.y, seed.x, seed.y}, x;
+  double last[4];
+  uint32_t i = 0;
+  for (; i + 1 < count; i += 2) {
+    memcpy(&x, points + i, sizeof x);
+    put_numbers(scramble(x, seeds), offsets[i]);
+  }
+  if (i < count) {
+    put_numbers(scramble((lanes){points[i].x, points[i].y}, seeds), last);
+    memcpy(offsets[i], last, sizeof offsets[i]);
+  }
+  filter_numbers(filter, offsets[0], 2 * count);
 }
 
 static uint64_t spread_bits(uint32_t value)   /* a zero between any two bits */

@@ -24,8 +24,9 @@ typedef struct { uint32_t x, y; } pixel_point;   /* of the sequence before scram
 void pixel_sample_path(uint32_t count, pixel_point *path);
 
 pixel_seed pixel_sample_seed(uint32_t face, uint32_t x, uint32_t y);
-/* Offset of a point from the pixel's centre in map pixels, within ± width/2. */
-void pixel_sample_offset(const pixel_filter *filter, pixel_seed seed, pixel_point point, double offset[2]);
+/* Offsets of points from the pixel's centre in map pixels, within ± width/2. */
+void pixel_sample_offsets(const pixel_filter *filter, pixel_seed seed, const pixel_point *points, uint32_t count,
+                          double (*offsets)[2]);
 
 /* A filter's inverse distribution function on a support of ±1, for u in [0,1]. */
 double pixel_filter_inverse(filter_kind kind, double u);

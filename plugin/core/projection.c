@@ -103,22 +103,36 @@ uint32_t projection_find(const projection *p, const double point[3], double reac
   return p->count ? add_hit(p, 0, q, 1, reach, hits) : 0;
 }
 
+/* Made twice, with all that stays the same kept in registers. */
+static inline __attribute__((always_inline)) void make_rays(const projection *p, const face *of, int perspective, const double (*at)[2],
+                                                            uint32_t count, dsm_ray *rays)
+{
+  const face f = *of;   /* a copy: rays could lie anywhere */
+  const double origin[3] = {p->origin[0], p->origin[1], p->origin[2]};
+  for (dsm_ray *ray = rays; ray < rays + count; ray++, at++) {
+    double u = f.u0 + (*at)[0] * f.pixel_u, v = f.v0 + (*at)[1] * f.pixel_v;
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; i++) {
+      double across = u * f.axes.right[i] + v * f.axes.up[i];
+      ray->origin[i] = perspective ? origin[i] : origin[i] + across;
+      ray->direction[i] = perspective ? across + f.axes.forward[i] : f.axes.forward[i];
+    }
+    if (perspective)
+      normalise(ray->direction);
+    ray->near_depth = f.near_depth;
+    ray->far_depth = f.far_depth;
+  }
+}
+
+void projection_rays(const projection *p, uint32_t index, const double (*at)[2], uint32_t count, dsm_ray *rays)
+{
+  if (p->perspective)
+    make_rays(p, &p->faces[index], 1, at, count, rays);
+  else
+    make_rays(p, &p->faces[index], 0, at, count, rays);
+}
+
 void projection_ray(const projection *p, uint32_t index, double x, double y, dsm_ray *ray)
 {
-  const face *f = &p->faces[index];
-  double u = f->u0 + x * f->pixel_u, v = f->v0 + y * f->pixel_v;
-  ray->near_depth = f->near_depth;
-  ray->far_depth = f->far_depth;
-  if (p->perspective) {
-    for (int i = 0; i < 3; i++) {
-      ray->origin[i] = p->origin[i];
-      ray->direction[i] = u * f->axes.right[i] + v * f->axes.up[i] + f->axes.forward[i];
-    }
-    normalise(ray->direction);
-  }
-  else
-    for (int i = 0; i < 3; i++) {
-      ray->origin[i] = p->origin[i] + u * f->axes.right[i] + v * f->axes.up[i];
-      ray->direction[i] = f->axes.forward[i];
-    }
+  projection_rays(p, index, &(const double[2]){x, y}, 1, ray);
 }

@@ -99,7 +99,8 @@ static inline void projection_side(const projection *p, const projected *at, con
  * rest is lit. 0: lit. */
 uint32_t projection_find(const projection *p, const double point[3], double reach, projected hits[3]);
 
-/* The light ray through pixel coordinates x, y of a face that has pixels. */
+/* The light rays through pixel coordinates x, y of a face that has pixels. */
+void projection_rays(const projection *p, uint32_t face, const double (*at)[2], uint32_t count, dsm_ray *rays);
 void projection_ray(const projection *p, uint32_t face, double x, double y, dsm_ray *ray);
 
 /* An orthonormal frame that looks along `forward` (unit length), with `up` near the y axis where it can. */

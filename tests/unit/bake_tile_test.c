@@ -57,7 +57,7 @@ static void pixels_are_their_rays_average(void **state) {
         dsm_ray ray;
         dsm_sink sink = {0};
         vertices list = {0};
-        pixel_sample_offset(&filter, pixel_sample_seed(0, 16 + px, 16 + py), path[i], o);
+        pixel_sample_offsets(&filter, pixel_sample_seed(0, 16 + px, 16 + py), &path[i], 1, &o);
         projection_ray(&s.map->projection, 0, 16 + px + 0.5 + o[0], 16 + py + 0.5 + o[1], &ray);
         assert_int_equal(sink_begin(&sink, &ray, 1), DSM_OK);
         assert_int_equal(trace_world(&s.w, &ray, 1, 0, &sink), DSM_OK);
@@ -123,7 +123,7 @@ static void spared_rays_do_not_count(void **state) {
           dsm_ray ray;
           dsm_sink sink = {0};
           vertices list = {0};
-          pixel_sample_offset(&filter, pixel_sample_seed(0, px, py), path[i], o);
+          pixel_sample_offsets(&filter, pixel_sample_seed(0, px, py), &path[i], 1, &o);
           projection_ray(&s.map->projection, 0, px + 0.5 + o[0], py + 0.5 + o[1], &ray);
           assert_int_equal(sink_begin(&sink, &ray, 1), DSM_OK);
           assert_int_equal(trace_world(&s.w, &ray, 1, 0, &sink), DSM_OK);
@@ -288,7 +288,7 @@ static void noise_is_measured(void **state) {
     double edge = (p + 0.5) / PIXELS - 0.5, covered = 0;
     for (uint32_t i = 0; i < N; ++i) {
       double o[2];
-      pixel_sample_offset(&(pixel_filter){FILTER_BOX, 1}, pixel_sample_seed(0, p, 0), path[i], o);
+      pixel_sample_offsets(&(pixel_filter){FILTER_BOX, 1}, pixel_sample_seed(0, p, 0), &path[i], 1, &o);
       first[i] = all.count;
       weights[i] = 1.0 / N;
       assert_int_equal(vertices_push(&all, 1, rgb_grey(1)), DSM_OK);

@@ -27,7 +27,7 @@ static void powers_of_two_fill_all_strata(void **state) {
       unsigned char seen[256] = {0};
       for (uint32_t i = 0; i < n; ++i) {
         double o[2];
-        pixel_sample_offset(&BOX, pixel, path[i], o);
+        pixel_sample_offsets(&BOX, pixel, &path[i], 1, &o);
         assert_seeded(&r, o[0] > -0.5 && o[0] < 0.5 && o[1] > -0.5 && o[1] < 0.5);
         uint32_t cell = ((uint32_t)((o[0] + 0.5) * (1u << across)) << (m - across)) + (uint32_t)((o[1] + 0.5) * (1u << (m - across)));
         assert_seeded(&r, !seen[cell]);
@@ -44,13 +44,33 @@ static void same_pixel_same_samples_other_pixel_others(void **state) {
   const pixel_point point = {7, 0x12345678};
   for (uint32_t k = 0; k < 3; ++k) {
     pixel_seed one = pixel_sample_seed(1, 2, 3), other = pixel_sample_seed(k == 0 ? 0 : 1, k == 1 ? 5 : 2, k == 2 ? 5 : 3);
-    pixel_sample_offset(&BOX, one, point, a);
-    pixel_sample_offset(&BOX, one, point, b);
+    pixel_sample_offsets(&BOX, one, &point, 1, &a);
+    pixel_sample_offsets(&BOX, one, &point, 1, &b);
     assert_memory_equal(a, b, sizeof a);
-    pixel_sample_offset(&BOX, other, point, b);
+    pixel_sample_offsets(&BOX, other, &point, 1, &b);
     differ += memcmp(a, b, sizeof a) != 0;
   }
   assert_int_equal(differ, 3);
+}
+
+static void many_are_as_one_by_one(void **state) {
+  (void)state;
+  enum { MOST = 9 };
+  pixel_point path[MOST];
+  pixel_sample_path(MOST, path);
+  const pixel_filter *filters[] = {&BOX, &TRIANGLE, &GAUSSIAN};
+  for (uint32_t n = 1; n <= MOST; ++n)
+    for (int k = 0; k < 3; ++k) {
+      double all[MOST + 1][2], one[2];
+      pixel_seed seed = pixel_sample_seed(1, n, 4);
+      all[n][0] = all[n][1] = 7;
+      pixel_sample_offsets(filters[k], seed, path, n, all);
+      assert_true(all[n][0] == 7 && all[n][1] == 7);
+      for (uint32_t i = 0; i < n; ++i) {
+        pixel_sample_offsets(filters[k], seed, &path[i], 1, &one);
+        assert_memory_equal(all[i], one, sizeof one);
+      }
+    }
 }
 
 /* Mean 0, and the variance of the density that the filter is. */
@@ -69,7 +89,7 @@ static void filters_have_their_moments(void **state) {
     for (uint32_t p = 0; p < PIXELS; ++p)
       for (uint32_t i = 0; i < RAYS; ++i) {
         double o[2];
-        pixel_sample_offset(&cases[k].filter, pixel_sample_seed(0, p, 77), path[i], o);
+        pixel_sample_offsets(&cases[k].filter, pixel_sample_seed(0, p, 77), &path[i], 1, &o);
         for (int a = 0; a < 2; ++a) {
           assert_true(fabs(o[a]) <= half);
           sum[a] += o[a] / (PIXELS * RAYS);
@@ -94,7 +114,7 @@ static double edge_error(uint32_t n) {
     double angle = rng_between(&r, 0, 6.3), nx = cos(angle), ny = sin(angle), d = rng_between(&r, -0.3, 0.3), got = 0, want = 0;
     for (uint32_t i = 0; i < n; ++i) {
       double o[2];
-      pixel_sample_offset(&BOX, pixel_sample_seed(0, p, 1), path[i], o);
+      pixel_sample_offsets(&BOX, pixel_sample_seed(0, p, 1), &path[i], 1, &o);
       got += nx * o[0] + ny * o[1] < d;
     }
     for (int i = 0; i < 64; ++i)   /* exact along y, 64 columns */
@@ -127,8 +147,8 @@ static void path_visits_all_by_short_steps(void **state) {
       seen[path[i].x] = 1;
       if (i == 0) continue;
       double a[2], b[2];
-      pixel_sample_offset(&BOX, pixel_sample_seed(3, n, 9), path[i - 1], a);
-      pixel_sample_offset(&BOX, pixel_sample_seed(3, n, 9), path[i], b);
+      pixel_sample_offsets(&BOX, pixel_sample_seed(3, n, 9), &path[i - 1], 1, &a);
+      pixel_sample_offsets(&BOX, pixel_sample_seed(3, n, 9), &path[i], 1, &b);
       length += hypot(a[0] - b[0], a[1] - b[1]);
     }
     assert_true(length < 2.2 * sqrt(n));   /* at random it would be 0.52 n */
@@ -141,6 +161,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(powers_of_two_fill_all_strata),
     cmocka_unit_test(same_pixel_same_samples_other_pixel_others),
+    cmocka_unit_test(many_are_as_one_by_one),
     cmocka_unit_test(filters_have_their_moments),
     cmocka_unit_test(edges_converge_as_stratified_samples_do),
     cmocka_unit_test(path_visits_all_by_short_steps),
