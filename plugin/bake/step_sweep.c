@@ -14,7 +14,7 @@ typedef struct {
   compensated sum[3];    /* of `now`, over all rays */
   double *gaps;          /* [i]: squared difference of rays i and i + 1; NULL: the noise is not wanted */
   double squares;        /* the sum of `gaps`, */
-  int64_t pairs;         /* and how many of them are not 0 */
+  double pairs;          /* and how many of them are not 0 */
 } sweep;
 
 /* Each is made twice, for one channel and for three, which spares grey a third of the work. */
@@ -74,13 +74,15 @@ FOR_CHANNELS int settle(const sweep *s, int channels, rgb *mean)
   return fallen;
 }
 
-FOR_CHANNELS dsm_result run(sweep *s, int channels, const depth_key *keys, const step_input *in, noise_profile *profile, vertices *mean)
+/* `mean` has room for two vertices an event. */
+FOR_CHANNELS void run(sweep *s, int channels, const depth_key *keys, const step_input *in, noise_profile *profile, vertices *mean)
 {
   size_t begin = mean->count;
+  vertex *out = mean->data + begin;
   rgb last = rgb_grey(1);
-  double noise = 0, variance = 0, ceiling = noise_ceiling(s->rays);
-  dsm_result result = DSM_OK;
-  for (size_t i = 0; i < in->count && result == DSM_OK;) {
+  double noise = 0, variance = 0;
+  noise_scale scale = noise_scale_of(s->rays);
+  for (size_t i = 0; i < in->count;) {
     double z = keys[i].z;
     for (; i < in->count && keys[i].z == z; i++) {
       const event *surface = &in->surfaces[keys[i].index];
@@ -91,20 +93,20 @@ FOR_CHANNELS dsm_result run(sweep *s, int channels, const depth_key *keys, const
     rgb before = last;
     if (!settle(s, channels, &last))
       continue;
-    result = vertices_push(mean, z, before);
-    if (result == DSM_OK)
-      result = vertices_push(mean, z, last);
-    if (profile && result == DSM_OK) {
-      size_t n = mean->count - begin;
+    out[0] = (vertex){z, before};
+    out[1] = (vertex){z, last};
+    out += 2;
+    if (profile) {
+      size_t n = (size_t)(out - mean->data) - begin;
       profile->allowed[n - 2] = noise;
       profile->variance[n - 2] = variance;
       if (s->pairs == 0)
         s->squares = 0;   /* without the rounding of those that were */
-      profile->allowed[n - 1] = noise = noise_allowed(s->squares, (double)s->pairs, s->rays, ceiling);
-      profile->variance[n - 1] = variance = noise_variance(s->squares, s->rays);
+      profile->allowed[n - 1] = noise = noise_allowed(s->squares, s->pairs, &scale);
+      profile->variance[n - 1] = variance = noise_variance(s->squares, &scale);
     }
   }
-  return result;
+  mean->count = (size_t)(out - mean->data);
 }
 
 /* So that a worker allocates but a few times. */
@@ -130,6 +132,8 @@ dsm_result step_sweep(const step_input *in, step_scratch *scratch, noise_profile
     return DSM_OK;
   size_t values = (size_t)in->rays * in->channels;
   dsm_result result = make_room(scratch, in->count, values + in->rays);
+  if (result == DSM_OK)
+    result = vertices_reserve(mean, 2 * in->count);
   if (result == DSM_OK && profile)
     result = noise_reserve(profile, 2 * in->count);
   if (result != DSM_OK)
@@ -147,7 +151,11 @@ dsm_result step_sweep(const step_input *in, step_scratch *scratch, noise_profile
   }
   for (int c = 0; c < in->channels; c++)
     s.sum[c].sum = s.rays;
-  return in->channels == 1 ? run(&s, 1, scratch->keys, in, profile, mean) : run(&s, 3, scratch->keys, in, profile, mean);
+  if (in->channels == 1)
+    run(&s, 1, scratch->keys, in, profile, mean);
+  else
+    run(&s, 3, scratch->keys, in, profile, mean);
+  return DSM_OK;
 }
 
 void step_free(step_scratch *scratch)

@@ -37,7 +37,7 @@ typedef struct {
   int rose[3], fell[3];   /* at this depth, by a step */
   double *gaps;     /* [i]: squared difference of functions i and i + 1; NULL: the noise is not wanted */
   double squares, pairs;  /* the sum of `gaps`, and how many of them are not 0 */
-  double ceiling;         /* of the noise */
+  noise_scale scale;
 } sweep;
 
 /* Each is made twice, for one channel and for three, which halves the work of grey. */
@@ -152,8 +152,7 @@ FOR_CHANNELS noise noise_behind(sweep *s, int channels, double z, const depth_ke
     if (i > 0) renew_gap(s, channels, i - 1, z);
     if (i + 1 < s->count) renew_gap(s, channels, i, z);
   }
-  double rays = (double)s->count;
-  return (noise){noise_allowed(s->squares, s->pairs, rays, s->ceiling), noise_variance(s->squares, rays)};
+  return (noise){noise_allowed(s->squares, s->pairs, &s->scale), noise_variance(s->squares, &s->scale)};
 }
 
 /* The value in front of a depth and behind it. Rounding must not make light grow where no function grows,
@@ -260,7 +259,7 @@ dsm_result average_and_noise(const average_input *in, average_scratch *scratch, 
   if (result) return result;
 
   sweep s = {.in = in, .functions = scratch->functions, .slopes = scratch->numbers, .count = in->count};
-  if (profile) s.gaps = s.slopes + 6 * s.count, s.ceiling = noise_ceiling((double)s.count);
+  if (profile) s.gaps = s.slopes + 6 * s.count, s.scale = noise_scale_of((double)s.count);
   memset(s.slopes, 0, 7 * s.count * sizeof *s.slopes);
   for (int c = 0; c < 3; ++c) s.value[c] = (compensated){1, 0};
   for (uint32_t i = 0; i < in->count; ++i) {

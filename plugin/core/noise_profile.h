@@ -17,26 +17,33 @@
 #include "core/extremes.h"
 #include "core/vertices.h"
 
-/* LV 4: half of the worst noise that this many rays can have. */
-static inline double noise_ceiling(double rays) { return 0.25 / sqrt(rays); }
+/* LV 4: half of the worst noise that this many rays can have. With 16 rays that is the step of one of them, which stays,
+ * whatever rounding says: look-ups average the noise of pixels, but not what compression makes of their steps (measured on hair: with 16
+ * rays, smoothing steps of one ray raises the error by a sixth). */
+static inline double noise_ceiling(double rays) { return (0.25 - 1e-9) / sqrt(rays); }
+
+/* What turns sums of squared differences into squared errors, for so many rays. */
+typedef struct { double variance, ceiling; } noise_scale;
+
+static inline noise_scale noise_scale_of(double rays)
+{
+  return (noise_scale){rays > 1 ? 1 / (2 * rays * (rays - 1)) : 0, noise_ceiling(rays)};
+}
+
+/* The variance of the mean itself. */
+static inline double noise_variance(double squares, const noise_scale *scale) { return squares * scale->variance; }
 
 /* What the disagreement of a pixel's rays allows: half the standard error, but at least what one of the
- * disagreeing rays adds, as that ray's own step lies where chance put it; at most `ceiling`, which is noise_ceiling(rays). `squares` is
+ * disagreeing rays adds, as that ray's own step lies where chance put it; at most the ceiling. `squares` is
  * the sum of the squared differences of neighbours, `pairs` how many neighbours differ. */
-static inline double noise_allowed(double squares, double pairs, double rays, double ceiling)
+static inline double noise_allowed(double squares, double pairs, const noise_scale *scale)
 {
   if (!(squares > 0))
     return 0;
   /* Every disagreeing ray has two neighbours. From four such rays on, half the error is more than one ray's
    * step; the hundredth lets that step itself pass. */
-  double share = pairs > 8 ? 0.5 : 1.01 / sqrt(greater(1, pairs / 2));
-  return lesser(ceiling, share * sqrt(squares / (2 * rays * (rays - 1))));
-}
-
-/* The variance of the mean itself. */
-static inline double noise_variance(double squares, double rays)
-{
-  return rays > 1 ? squares / (2 * rays * (rays - 1)) : 0;
+  double share = pairs > 8 ? 0.5 * 0.5 : 1.01 * 1.01 / greater(1, pairs / 2), square = share * noise_variance(squares, scale);
+  return square < scale->ceiling * scale->ceiling ? sqrt(square) : scale->ceiling;
 }
 
 /* Zero-initialise; a caller keeps it between pixels. Both hold from a vertex of the average to the next, or to infinity; of

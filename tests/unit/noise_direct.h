@@ -109,7 +109,8 @@ static void noise_direct(const average_input *in, const vertices *mean, double *
     pair += pairs[i];
     if (pair < 0.5)   /* whole numbers, and exact; the squares have rounded */
       square = 0;
-    allowed[i] = noise_allowed(square, pair, in->count, noise_ceiling(in->count));
+    double n_rays = in->count, error = n_rays > 1 ? sqrt(square / (2 * n_rays * (n_rays - 1))) : 0;
+    allowed[i] = fmin(noise_ceiling(n_rays), error * (pair > 8 ? 0.5 : 1.01 / sqrt(fmax(1, pair / 2))));
   }
   free(squares);
   free(pairs);
