@@ -7,7 +7,8 @@
 
 void bundle_begin(bundle *b, int level) {
   b->level = level;
-  b->floor.first = b->floor.end = b->roof.first = b->roof.end = 0;
+  b->floor = (chain){b->floor_room, b->floor_room};
+  b->roof = (chain){b->roof_room, b->roof_room};
   /* So that they are infinitely high and low at every depth. */
   b->rise.line = (line){{-HUGE_VAL, 0}, HUGE_VAL};
   b->fall.line = (line){{-HUGE_VAL, 0}, -HUGE_VAL};
@@ -20,11 +21,11 @@ void bundle_begin_at(bundle *b, double z, double low, double high) {
   b->start = b->end = z;
   if (high < HUGE_VAL) {
     b->rise.support = top;
-    b->roof.points[b->roof.end++] = top;
+    *b->roof.end++ = top;
   }
   if (low > -HUGE_VAL) {
     b->fall.support = bottom;
-    b->floor.points[b->floor.end++] = bottom;
+    *b->floor.end++ = bottom;
   }
 }
 
@@ -37,23 +38,25 @@ static inline void turn(tangent *t, chain *chain, point p, int side, int level) 
     t->line = (line){p, 0};
     return;
   }
-  if (chain->first == chain->end) return;
-  point *a = &chain->points[chain->first], *end = &chain->points[chain->end];
+  point *a = chain->first, *end = chain->end;
+  if (a == end) return;
   /* The next support is tighter if the line through it is flatter. */
   while (a + 1 < end && a[1].z < p.z &&
          side * (p.y - a[1].y) * (p.z - a->z) <= side * (p.y - a->y) * (p.z - a[1].z))
     ++a;
-  chain->first = (size_t)(a - chain->points);
+  chain->first = a;
   if (p.z > a->z) t->line = (line){*a, (p.y - a->y) / (p.z - a->z)};   /* else nothing holds it still */
 }
 
 static inline void push(chain *chain, point p, int side) {
-  while (chain->end - chain->first > 1) {
-    point *b = &chain->points[chain->end - 1], *a = b - 1;
+  point *end = chain->end;
+  while (end - chain->first > 1) {
+    const point *b = end - 1, *a = b - 1;
     if (side * (b->y - a->y) * (p.z - a->z) > side * (p.y - a->y) * (b->z - a->z)) break;
-    --chain->end;
+    --end;
   }
-  chain->points[chain->end++] = p;
+  *end = p;
+  chain->end = end + 1;
 }
 
 int bundle_narrow(bundle *b, double z, double low, double high, double fall, double rise) {
@@ -70,12 +73,11 @@ int bundle_narrow(bundle *b, double z, double low, double high, double fall, dou
 }
 
 void bundle_heights(const bundle *b, double slope, double z, double *low, double *high) {
-  *low = -HUGE_VAL;
-  *high = HUGE_VAL;
-  for (size_t i = b->floor.first; i < b->floor.end; ++i)
-    *low = greater(*low, b->floor.points[i].y + slope * (z - b->floor.points[i].z));
-  for (size_t i = b->roof.first; i < b->roof.end; ++i)
-    *high = lesser(*high, b->roof.points[i].y + slope * (z - b->roof.points[i].z));
+  double bottom = -HUGE_VAL, top = HUGE_VAL;
+  for (const point *p = b->floor.first; p < b->floor.end; ++p) bottom = greater(bottom, p->y + slope * (z - p->z));
+  for (const point *p = b->roof.first; p < b->roof.end; ++p) top = lesser(top, p->y + slope * (z - p->z));
+  *low = bottom;
+  *high = top;
 }
 
 line bundle_middle(const bundle *b, double steepest) {
@@ -85,7 +87,7 @@ line bundle_middle(const bundle *b, double steepest) {
   double far = b->end > b->start ? 1 / (b->end - b->start) : 1;
   if (low == -HUGE_VAL) low = (high == HUGE_VAL ? 0 : high) - far;
   if (high == HUGE_VAL) high = low + far;
-  double slope = lesser(low + (high - low) / 2, high), z = b->floor.points[b->floor.first].z, bottom, top;
+  double slope = lesser(low + (high - low) / 2, high), z = b->floor.first->z, bottom, top;
   bundle_heights(b, slope, z, &bottom, &top);
   return (line){{z, bottom + (top - bottom) / 2}, slope};
 }

@@ -28,15 +28,13 @@ typedef struct {
   point support;  /* the right one */
 } tangent;
 
-/* A hull; what is left of `first` no line touches any more. */
-typedef struct {
-  point *points;
-  size_t first, end;
-} chain;
+/* A hull, `first` to in front of `end`; what is left of `first` no line touches any more. */
+typedef struct { point *first, *end; } chain;
 
 typedef struct {
   tangent rise, fall;
-  chain floor, roof;   /* their memory, two points a gate, is the caller's */
+  chain floor, roof;
+  point *floor_room, *roof_room;   /* for them: two points a gate, the caller's */
   int level;           /* level lines only */
   double start, end;   /* of the row */
 } bundle;

@@ -194,8 +194,8 @@ dsm_result compress_colour(const vertex *in, size_t count, bounds within, vertic
   int dims = 0;
   size_t clear = SIZE_MAX;
   for (int c = 0; c < 3; ++c) {
-    j.lines[c].floor.points = points + 4 * (size_t)c * most;
-    j.lines[c].roof.points = j.lines[c].floor.points + 2 * most;
+    j.lines[c].floor_room = points + 4 * (size_t)c * most;
+    j.lines[c].roof_room = j.lines[c].floor_room + 2 * most;
     j.tunnels[c].places = places + (size_t)c * most;
     dims |= tunnel_read(&j.tunnels[c], in, count, c, within, 0);
     if (j.tunnels[c].clear < clear) clear = j.tunnels[c].clear;

@@ -48,11 +48,23 @@ static gate gate_back(const search *s, size_t k, int sides, double least) {
   return g;
 }
 
+/* What may follow the wall at place k: of the gate behind it, what lines on the way lead to. */
+static void put_wall(search *s, size_t k, double low, double high) {
+  double z = s->tunnel.places[k].z;
+  s->goals[s->goal_count++] = (chord){{z, low}, {z, high}, WALL};
+}
+
 /* One piece between two walls, from place `right` on. Sets its left wall, or 0 for the beginning. */
 static int piece_back(search *s, size_t right, double least, size_t *left) {
   const tunnel *t = &s->tunnel;
   int is_last = s->goal_count == 0;
   bundle_begin(&s->lines, is_last);
+  if (!is_last && tunnel_steps(t, right - 1)) {   /* a line leads from any value to any other */
+    gate g = gate_back(s, right - 1, AFTER, least);
+    put_wall(s, right - 1, g.low, g.high);
+    *left = right - 1;
+    return 1;
+  }
   for (size_t k = right;; --k) {
     int wall = tunnel_steps(t, k) && (k < right || is_last), sides = BEFORE | AFTER;
     if (wall) sides = AFTER;
@@ -68,10 +80,8 @@ static int piece_back(search *s, size_t right, double least, size_t *left) {
     *left = k;
     if (!wall && k > 0) continue;
     if (wall) {
-      double z = t->places[k].z;
-      point low = {z, greater(g.low, line_at(&s->lines.fall.line, -z))};
-      point high = {z, lesser(g.high, line_at(&s->lines.rise.line, -z))};
-      s->goals[s->goal_count++] = (chord){low, high, WALL};
+      double z = -t->places[k].z;
+      put_wall(s, k, greater(g.low, line_at(&s->lines.fall.line, z)), lesser(g.high, line_at(&s->lines.rise.line, z)));
     }
     return 1;
   }

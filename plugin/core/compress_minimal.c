@@ -26,7 +26,7 @@
 #include "core/compress_goals.h"
 #include "core/extremes.h"
 
-#define MARGIN 1e-12
+#define MARGIN 1e-10            /* so wide that rounding matters only to lines as steep as 5e4 over their depth */
 #define LEAST_TOLERANCE 1e-12   /* below, rounding is all */
 #define PASSABLE 1.99           /* of the tolerance: a step that a line can pass */
 #define STEP_ROUNDING 4e-16     /* of a step that is the difference of two averages */
@@ -273,19 +273,16 @@ static dsm_result compete_with_greedy(const vertex *in, size_t count, int channe
   return DSM_OK;
 }
 
-static dsm_result compress_grey(const vertex *in, size_t count, bounds within, vertices *out, int *lost,
-                                int *doubtful) {
-  size_t most = count + 3, bytes = sizeof(place) + 4 * sizeof(point) + 2 * sizeof(chord);
-  char *memory = most > SIZE_MAX / bytes ? NULL : malloc(most * bytes);
-  if (!memory) return DSM_NO_MEMORY;
+static dsm_result compress_in(char *memory, size_t most, const vertex *in, size_t count, bounds within, vertices *out, int *lost,
+                              int *doubtful) {
   size_t start = out->count;
   job j = {.out = out, .value = 1, .depth = -HUGE_VAL};
   search *s = &j.search;
   s->margin = lesser(MARGIN, within.tolerance * 0x1p-20);
-  s->goals = (chord *)memory;
+  s->goals = (chord *)(void *)memory;
   s->tunnel.places = (place *)(s->goals + 2 * most);
-  s->lines.floor.points = (point *)(s->tunnel.places + most);
-  s->lines.roof.points = s->lines.floor.points + 2 * most;
+  s->lines.floor_room = (point *)(s->tunnel.places + most);
+  s->lines.roof_room = s->lines.floor_room + 2 * most;
 
   dsm_result result = DSM_OK;
   if (tunnel_read(&s->tunnel, in, count, 0, within, 1)) {
@@ -295,8 +292,19 @@ static dsm_result compress_grey(const vertex *in, size_t count, bounds within, v
     if (!*lost && !result) *lost = !tunnel_holds(&s->tunnel, out->data + start, out->count - start);
   }
   *doubtful = s->doubtful;
-  free(memory);
   if (*lost || result) out->count = start;
+  return result;
+}
+
+static dsm_result compress_grey(const vertex *in, size_t count, bounds within, vertices *out, int *lost,
+                                int *doubtful) {
+  enum { BYTES = sizeof(place) + 4 * sizeof(point) + 2 * sizeof(chord), FEW = 48 };
+  _Alignas(chord) char few[FEW * BYTES];   /* what 16 rays meet needs no allocation */
+  size_t most = count + 3;
+  char *memory = most <= FEW ? few : most > SIZE_MAX / BYTES ? NULL : malloc(most * BYTES);
+  if (!memory) return DSM_NO_MEMORY;
+  dsm_result result = compress_in(memory, most, in, count, within, out, lost, doubtful);
+  if (memory != few) free(memory);
   return result;
 }
 
