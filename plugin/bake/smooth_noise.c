@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/compress.h"
+#include "core/extremes.h"
 
 /* From the first vertex of the place where noise begins to the last vertex of the place where it ends. */
 typedef struct {
@@ -54,7 +55,7 @@ static int find_stretch(const vertices *v, const noise_profile *profile, const n
   }
   s->allowed = length > 0 ? sqrt(squares / length) : peak;
   if (s->open)
-    s->allowed = fmin(s->allowed, peak);
+    s->allowed = lesser(s->allowed, peak);
   else if (length <= limits->thin * v->data[s->first].z + limits->thin_at_least)
     s->allowed = limits->most;
   return 1;
@@ -125,7 +126,7 @@ static dsm_result smooth_stretch(const vertices *v, const stretch *s, int channe
   for (size_t i = begin; i < out->count; i++) {
     rgb absolute = rgb_mul(out->data[i].v, front);
     for (int c = 0; c < 3; c++)
-      out->data[i].v.c[c] = s->open ? absolute.c[c] : fmax(absolute.c[c], end.c[c]);
+      out->data[i].v.c[c] = s->open ? absolute.c[c] : greater(absolute.c[c], end.c[c]);
   }
   if (s->open)
     return DSM_OK;

@@ -48,13 +48,15 @@ FOR_CHANNELS void meet(sweep *s, int channels, uint32_t ray, const rgb *transmit
     renew_gap(s, channels, ray);
 }
 
-/* The last sum is taken afresh: what is dark must be exactly 0. */
-FOR_CHANNELS void sum_afresh(sweep *s, int channels)
+/* What is dark at the end must be exactly 0. */
+FOR_CHANNELS void settle_darkness(sweep *s, int channels)
 {
   for (int c = 0; c < channels; c++) {
-    s->sum[c] = (compensated){0, 0};
+    int dark = 1;
     for (uint32_t i = 0; i < s->rays; i++)
-      compensated_add(&s->sum[c], s->now[(size_t)i * channels + c]);
+      dark &= s->now[(size_t)i * channels + c] == 0;
+    if (dark)
+      s->sum[c] = (compensated){0, 0};
   }
 }
 
@@ -89,7 +91,7 @@ FOR_CHANNELS void run(sweep *s, int channels, const depth_key *keys, const step_
       meet(s, channels, surface->ray - in->first_ray, &surface->transmittance);
     }
     if (i == in->count)
-      sum_afresh(s, channels);
+      settle_darkness(s, channels);
     rgb before = last;
     if (!settle(s, channels, &last))
       continue;

@@ -30,7 +30,6 @@ dsm_result sink_begin(dsm_sink *sink, const dsm_ray *rays, uint32_t ray_count) {
   sink->pixel_rays = 1;
   memset(sink->marked, 0, ray_count);
   memset(sink->spared, 0, ray_count);
-  memset(sink->first, 0, ((size_t)ray_count + 1) * sizeof *sink->first);
   return DSM_OK;
 }
 

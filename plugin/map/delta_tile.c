@@ -78,24 +78,27 @@ static uint32_t divided_up(uint32_t a, uint32_t b)
   return (a + b - 1) / b;
 }
 
-/* What all records take, in bits, or UINT64_MAX where they cannot tell a number. */
-static uint64_t bits_taken(const lengths *n, delta_shape shape)
+/* What all records take, in bits, or UINT64_MAX where they cannot tell a number or take as much as `least`. One for each of the
+ * `numbers`, and more for the long ones. */
+static uint64_t bits_taken(const lengths *n, delta_shape shape, uint64_t numbers, uint64_t least)
 {
   uint32_t most = most_added(shape), fall_bits = shape.bits - shape.depth_bits;
-  uint64_t records = 0;
-  for (uint32_t length = 0; length < n->end; length++) {
+  uint32_t shorter = shape.depth_bits < fall_bits ? shape.depth_bits : fall_bits;
+  uint64_t records = numbers;
+  for (uint32_t length = n->end; length-- > shorter + 1 && records * shape.bits < least;) {
     uint32_t deeper = length > shape.depth_bits, darker = length > fall_bits;
     if (n->starts[length] && length > 2 * shape.bits - 1)
       return UINT64_MAX;
     if (most == 0 && ((deeper && n->depths[length]) || (darker && n->falls[length])))
       return UINT64_MAX;
-    records += (uint64_t)n->starts[length] * (length < shape.bits ? 1 : 2) + n->depths[length];
+    if (length >= shape.bits)
+      records += n->starts[length];
     if (deeper && n->depths[length])
       records += ADDING_COSTS * (uint64_t)n->depths[length] * divided_up(1u << (length - shape.depth_bits), most);
     if (darker && n->falls[length])
       records += ADDING_COSTS * (uint64_t)n->falls[length] * divided_up(1u << (length - fall_bits), most);
   }
-  return records * shape.bits;
+  return records * shape.bits < least ? records * shape.bits : UINT64_MAX;
 }
 
 /* Longer records are not better once a record for each number takes as much as the best so far. */
@@ -107,7 +110,7 @@ static delta_shape best_shape(const lengths *n)
     numbers += (uint64_t)n->starts[length] + n->depths[length];
   for (uint32_t bits = LEAST_DELTA_BITS; bits <= MOST_DELTA_BITS && numbers * bits < least; bits++)
     for (uint32_t depth_bits = LEAST_DEEPER_BITS; depth_bits + LEAST_FALL_BITS <= bits; depth_bits++) {
-      uint64_t taken = bits_taken(n, (delta_shape){bits, depth_bits});
+      uint64_t taken = bits_taken(n, (delta_shape){bits, depth_bits}, numbers, least);
       if (taken < least) {
         least = taken;
         best = (delta_shape){bits, depth_bits};
