@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "map/lone_caster.h"
 #include "map/view.h"
 
 /* How much of the light that a pixel lets through in front of a surface its own slope may take away in the
@@ -237,11 +238,24 @@ static inline int begin_tile(view *v, const tile *t)
   return (t->layout & ~TILE_REFINED) == 0;
 }
 
+/* A tile to read: &tile_lit in place of one that is not there and would tell nothing else. */
+static inline dsm_result find_tile(const view *v, const tile_key *key, const tile **out)
+{
+  dsm_worker *worker = v->worker;
+  *out = tile_cache_hold(tile_store_slot(&worker->map->store, key), &worker->holder);
+  if (*out)
+    return DSM_OK;
+  if (!lone_caster_is_behind(worker->map, key, v->receiver))
+    return worker_need_tile(worker, key, out);
+  *out = &tile_lit;
+  return DSM_OK;
+}
+
 static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, uint32_t y, double size,
                                     const double weight[4])
 {
   const tile *t;
-  dsm_result result = worker_tile(v->worker, key, &t);
+  dsm_result result = find_tile(v, key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   int plain = begin_tile(v, t);
@@ -259,7 +273,7 @@ static dsm_result add_apart(view *v, uint32_t level, uint32_t x, uint32_t y, dou
 {
   tile_key key = {v->at->face, level, x / TILE_SIDE, y / TILE_SIDE};
   const tile *t;
-  dsm_result result = worker_tile(v->worker, &key, &t);
+  dsm_result result = find_tile(v, &key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
