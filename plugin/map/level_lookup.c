@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
+#include "map/lone_caster.h"
 #include "map/view.h"
 
 /* How much of the light that a pixel lets through in front of a surface its own slope may take away in the
@@ -199,6 +200,11 @@ static dsm_result add_pixel_of_4(view *v, const tile *t, uint32_t place, size_t 
   return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 1, 4});
 }
 
+static dsm_result add_pixel_of_5(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
+{
+  return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 1, 5});
+}
+
 static dsm_result add_pixel_of_6(view *v, const tile *t, uint32_t place, size_t first, uint32_t x, uint32_t y, double size, double weight)
 {
   return add_pixel_as(v, t, place, first, x, y, size, weight, (reading){1, 0, 6});
@@ -210,8 +216,7 @@ static dsm_result add_pixel(view *v, const tile *t, uint32_t place, size_t first
 }
 
 /* Four pixels of one tile, the first of them (x, y). Both rows are sent for before the first is read. */
-static inline __attribute__((always_inline)) dsm_result add_rows(view *v, const tile *t, uint32_t x, uint32_t y, double size,
-                                                                 const double weight[4], pixel_adder *add)
+static dsm_result add_rows(view *v, const tile *t, uint32_t x, uint32_t y, double size, const double weight[4], pixel_adder *add)
 {
   uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
   size_t low = tile_first(t, place), high = tile_first(t, place + TILE_SIDE);
@@ -227,6 +232,30 @@ static inline __attribute__((always_inline)) dsm_result add_rows(view *v, const 
   return result == DSM_OK ? add(v, t, place + 1, high + tile_records(t, place), x + 1, y + 1, size, weight[3]) : result;
 }
 
+/* As add_rows for a point in the air, where pixels are plain: nothing can be in doubt. Of most look-ups, as media ask at every sample. */
+static inline __attribute__((always_inline)) dsm_result add_air_as(view *v, const tile *t, uint32_t x, uint32_t y, const double weight[4],
+                                                                   size_t bytes, int whole)
+{
+  uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
+  const unsigned char *counts = tile_counts(t) + place;
+  const uint32_t count[4] = {counts[0], counts[1], counts[TILE_SIDE], counts[TILE_SIDE + 1]};
+  uint32_t first[4] = {tile_first(t, place), 0, tile_first(t, place + TILE_SIDE), 0};
+  first[1] = first[0] + count[0];
+  first[3] = first[2] + count[2];
+  double lost = 0;
+  for (uint32_t k = 0; k < 4; k++) {
+    if (count[k] == 0)
+      continue;
+    visibility function = {&t->codes, first[k], count[k], count[k], 1};
+    visibility_place at;
+    uint32_t *hint = &v->worker->hints[(y + (k >> 1)) % HINT_SIDE * HINT_SIDE + (x + (k & 1)) % HINT_SIDE];
+    if (visibility_find_as(&function, v->key, hint, &at, bytes, whole))
+      lost += weight[k] * (1 - visibility_value(&function, &at, 0));
+  }
+  v->lost_grey += lost;
+  return DSM_OK;
+}
+
 /* Gets ready for a tile's pixels: the point's own depth there, or how to read deltas. Returns whether pixels are plain. */
 static inline int begin_tile(view *v, const tile *t)
 {
@@ -237,35 +266,62 @@ static inline int begin_tile(view *v, const tile *t)
   return (t->layout & ~TILE_REFINED) == 0;
 }
 
+/* A tile to read: &tile_lit in place of one that is not there and would tell nothing else. */
+static inline dsm_result find_tile(const view *v, const tile_key *key, const tile **out)
+{
+  dsm_worker *worker = v->worker;
+  *out = tile_cache_hold(tile_store_slot(&worker->map->store, key), &worker->holder);
+  if (*out)
+    return DSM_OK;
+  if (!lone_caster_is_behind(worker->map, key, v->receiver))
+    return worker_need_tile(worker, key, out);
+  *out = &tile_lit;
+  return DSM_OK;
+}
+
+/* What reads a pixel of the tile. The least that a float and a value take is 5 bytes, the most that another code and a value do as well. */
+static inline pixel_adder *adder_of(const tile *t, int plain)
+{
+  if (plain && codes_are_deltas(&t->codes))
+    return add_pixel_of_deltas;
+  switch (plain ? t->codes.record_bits / 8 : 0) {
+    case 3: return add_pixel_of_3;
+    case 4: return add_pixel_of_4;
+    case 5: return codes_are_whole(&t->codes) ? add_pixel_of_5 : add_pixel;
+    case 6: return add_pixel_of_6;
+    default: return add_pixel;
+  }
+}
+
 static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, uint32_t y, double size,
                                     const double weight[4])
 {
   const tile *t;
-  dsm_result result = worker_tile(v->worker, key, &t);
+  dsm_result result = find_tile(v, key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   int plain = begin_tile(v, t);
-  if (plain && codes_are_deltas(&t->codes))
-    return add_rows(v, t, x, y, size, weight, add_pixel_of_deltas);
-  switch (plain ? t->codes.record_bits / 8 : 0) {
-    case 3: return add_rows(v, t, x, y, size, weight, add_pixel_of_3);   /* the least that a float and a value take is 5 */
-    case 4: return add_rows(v, t, x, y, size, weight, add_pixel_of_4);
-    case 6: return add_rows(v, t, x, y, size, weight, add_pixel_of_6);   /* the most that another code and a value take is 5 */
-    default: return add_rows(v, t, x, y, size, weight, add_pixel);
+  pixel_adder *add = adder_of(t, plain);
+  if (!v->plane_count) {
+    if (add == add_pixel_of_4)
+      return add_air_as(v, t, x, y, weight, 4, 1);
+    if (add == add_pixel_of_5)
+      return add_air_as(v, t, x, y, weight, 5, 1);
+    if (add == add_pixel_of_6)
+      return add_air_as(v, t, x, y, weight, 6, 0);
   }
+  return add_rows(v, t, x, y, size, weight, add);
 }
 
 static dsm_result add_apart(view *v, uint32_t level, uint32_t x, uint32_t y, double size, double weight)
 {
   tile_key key = {v->at->face, level, x / TILE_SIDE, y / TILE_SIDE};
   const tile *t;
-  dsm_result result = worker_tile(v->worker, &key, &t);
+  dsm_result result = find_tile(v, &key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
-  int plain = begin_tile(v, t);
-  return plain && codes_are_deltas(&t->codes) ? add_pixel_of_deltas(v, t, place, tile_first(t, place), x, y, size, weight)
-                                              : add_pixel(v, t, place, tile_first(t, place), x, y, size, weight);
+  return adder_of(t, begin_tile(v, t))(v, t, place, tile_first(t, place), x, y, size, weight);
 }
 
 dsm_result view_add_bilinear(view *v, uint32_t level, double x, double y, double share)

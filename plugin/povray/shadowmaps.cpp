@@ -244,6 +244,14 @@ void ShadowMaps::AppendTasks(TaskQueue& queue, vector<ViewThreadData *>& threads
 	}
 }
 
+bool ShadowMaps::Answers(TraceThreadData& thread, const LightSource& light)
+{
+	const ShadowMaps *maps = thread.GetSceneData()->shadowMaps.get();
+	const size_t index = (maps != NULL) ? maps->Find(light) : kNone;
+
+	return (index != kNone) && !maps->IsUndecided(index);
+}
+
 bool ShadowMaps::HasUndecided() const
 {
 	for(size_t i = 0; i < maps.size(); i++)

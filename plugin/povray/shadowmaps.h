@@ -56,6 +56,8 @@ class ShadowMaps
 			const vector<size_t>& places = light.lightGroupLight ? groupLights : globalLights;
 			return light.index < places.size() ? places[light.index] : kNone;
 		}
+		/// Whether this light's shadows come from a map. To ask or not to ask then changes no random number.
+		static bool Answers(TraceThreadData& thread, const LightSource& light);
 		const ShadowMap& operator[](size_t map) const { return maps[map]; }
 		size_t Count() const { return maps.size(); }
 

@@ -96,7 +96,7 @@ static inline void count_reports(void *data, int32_t severity, const char *sente
 static inline dsm_map *open_map(tallies *sum, double cache) {
   memset(sum, 0, sizeof *sum);
   dsm_host host = {.size = sizeof host, .data = sum, .trace = no_rays, .pause = give_up, .report = count_reports};
-  dsm_box box = {{-1, -1, 4}, {1, 1, 6}};
+  static const dsm_box box = {{-1, -1, 4}, {1, 1, 6}};
   dsm_light light = {.size = sizeof light, .kind = DSM_LIGHT_PARALLEL, .direction = {0, 0, 1},
                      .casters = &box, .caster_count = 1};
   dsm_settings settings;

@@ -48,6 +48,33 @@ static void borders(void **state) {
   stage_close(&s);
 }
 
+/* In grey fog, with records of all lengths, points in the air are as dark as a surface that faces the light. */
+static void in_the_air_and_on_a_surface(void **state) {
+  (void)state;
+  shape fog = fog_in((dsm_box){{-1, -1, 5}, {1, 1, 7}}, 1, 1, 1, 0.2);
+  const char *const *words[] = {WORDS("resolution 66", "bias 0"), WORDS("resolution 66", "bias 0", "tolerance 0"),
+                                WORDS("resolution 66", "bias 0", "tolerance 0.0005"), WORDS("resolution 66", "bias 0", "tolerance 0.02")};
+  int seen[7] = {0};
+  rng r = rng_seeded(12);
+  for (int k = 0; k < 4; ++k) {
+    stage s;
+    stage_open(&s, &fog, 1, parallel_at(0, 0, 0, 0, 0, 1), words[k]);
+    for (int i = 0; i < 1000; ++i) {
+      double x = rng_between(&r, -0.9, 0.9), y = rng_between(&r, -0.9, 0.9), z = rng_between(&r, 5, 7.1), far = fmin(z, 7) - 5;
+      double air = light_of(&s, in_air(x, y, z), 0);
+      assert_seeded(&r, fabs(air - exp(-far * (1 + 0.1 * far))) < 0.02 + 1e-5);
+      assert_seeded(&r, fabs(air - light_of(&s, on_plane(x, y, z, 0, 0, -1), 0)) < 2e-5);
+    }
+    for (uint64_t n = 0; n < s.map->store.tile_count; ++n) {
+      tile_key key = tile_store_key(&s.map->store, n);
+      const tile *t = tile_store_peek(&s.map->store, &key);
+      if (t && t->kind == TILE_STORED && !codes_are_deltas(&t->codes)) ++seen[t->codes.record_bits / 8];
+    }
+    stage_close(&s);
+  }
+  assert_true(seen[6] > 0 && seen[4] + seen[5] > 0);
+}
+
 static void behind_the_last_caster_its_value_stays(void **state) {
   (void)state;
   shape ball = sphere_at(0, 0, 5, 1, 0.5);
@@ -173,6 +200,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(bilinear_across_an_edge),
     cmocka_unit_test(borders),
+    cmocka_unit_test(in_the_air_and_on_a_surface),
     cmocka_unit_test(behind_the_last_caster_its_value_stays),
     cmocka_unit_test(numbers_that_are_none),
     cmocka_unit_test(rise_and_constant_bias),

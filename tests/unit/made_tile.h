@@ -60,7 +60,7 @@ static inline double value_there(const tile *t, const visibility *v, double z, r
   if (v->count && (t->layout & ~TILE_REFINED) == 0 && !codes_are_deltas(&t->codes)) {   /* as look-ups take it that know the length of records */
     uint32_t bytes = t->codes.record_bits / 8u;
     visibility_place a = {0}, b = {0};
-    if (bytes == 3 || bytes == 4 || bytes == 6) {
+    if (bytes == 3 || bytes == 4 || bytes == 6 || (bytes == 5 && codes_are_whole(&t->codes))) {
       int whole = bytes != 6, found = visibility_find(v, visibility_key_of(v->codes, z), &hint, &a);
       assert_seeded(r, found == visibility_find_as(v, visibility_key_as(v->codes, z, whole), &hint, &b, bytes, whole));
       assert_seeded(r, !found || (a.t == b.t && a.front == b.front && a.behind == b.behind));
