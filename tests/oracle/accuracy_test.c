@@ -215,6 +215,22 @@ static void nothing_is_missing(void **state) {
   }
 }
 
+/* A lone bead that is far smaller than a pixel of the first level, so that no ray of its tile may meet it, and the shadow in its middle. */
+static void beads_are_found(void **state) {
+  (void)state;
+  rng r = rng_seeded(6);
+  for (int i = 0; i < (int)most_cases(60); ++i) {
+    double x = rng_between(&r, -1.5, 1.5), y = rng_between(&r, -1.5, 1.5), radius = rng_scale(&r, 0.0015, 0.02), side = radius / 8;
+    shape shapes[] = {sphere_at(-1.9, -1.9, 1.1, 0.1, 0), sphere_at(1.9, 1.9, 1.1, 0.1, 0), sphere_at(x, y, 3, radius, 0)};
+    int far_light = i % 2;   /* one whose rays are as good as parallel */
+    stage s;
+    stage_open(&s, shapes, 3, far_light ? point_at(x, y, -1e4) : sun(), WORDS("accuracy 0.01"));
+    dsm_receiver at = {.point = {x, y, FLOOR}, .has_footprint = 1, .footprint = {{side, 0, 0}, {0, side, 0}}};
+    assert_true(light_of(&s, at, 0) < 0.1);
+    stage_close(&s);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_is_as_accurate_as_it_says),
@@ -222,6 +238,7 @@ int main(void) {
     cmocka_unit_test(no_seams),
     cmocka_unit_test(order_does_not_matter),
     cmocka_unit_test(nothing_is_missing),
+    cmocka_unit_test(beads_are_found),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
