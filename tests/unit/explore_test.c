@@ -82,6 +82,22 @@ static void errors(void **state) {
   stage_close(&s);
 }
 
+/* Light that grows is ray-traced, and a ray makes no error, though the sphere's edge is one like others. */
+static void rays_are_right(void **state) {
+  (void)state;
+  shape shapes[] = {SCENE[0], SCENE[1], SCENE[2]};
+  for (int c = 0; c < 3; ++c) shapes[2].pass[c] = 1.5;
+  stage s;
+  stage_open(&s, shapes, 3, sun(), WORDS("accuracy 0.01"));
+  for (double x = 0.9; x < 1.1; x += 0.01) {
+    dsm_receiver at = place(&s, x, 0, 0.3, 0.3);
+    explore(&s, at);
+  }
+  assert_int_equal(s.map->explored.looked, 20);
+  assert_true(s.map->explored.squares == 0);
+  stage_close(&s);
+}
+
 /* What is seen of two faces of a cube counts by their weights. */
 static void seams(void **state) {
   (void)state;
@@ -263,6 +279,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(widths),
     cmocka_unit_test(errors),
+    cmocka_unit_test(rays_are_right),
     cmocka_unit_test(seams),
     cmocka_unit_test(beads),
     cmocka_unit_test(nothing_to_learn),
