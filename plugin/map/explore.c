@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "map/lookup.h"
 #include "map/view.h"
 
 /* Of the squared aim, in units of what pixels let pass (measured: tests/bench/accuracy.sh). */
@@ -38,6 +39,8 @@ dsm_result map_explore(dsm_worker *worker, const dsm_receiver *receiver)
 {
   const dsm_map *map = worker->map;
   projected hits[3];
+  if (!receiver_is_sound(receiver))
+    return DSM_INVALID;
   if (map->first_level == 0 || !receiver->has_footprint)
     return DSM_OK;
   dsm_result result = DSM_OK;
@@ -59,7 +62,7 @@ static double width_of(const exploration *e, double camera_rays, double rays_acr
 void map_explored(dsm_map *map, uint64_t camera_rays, double rays_across)
 {
   const exploration *e = &map->explored;
-  if (map->first_level == 0 || e->looked == 0)
+  if (map->first_level == 0 || e->looked == 0 || !(rays_across > 0))
     return;
   double width = width_of(e, (double)camera_rays, rays_across, map->settings.accuracy);
   width = fmax(sqrt(map->coarser), fmin(COARSEST, width));

@@ -125,8 +125,10 @@ static dsm_result add_wide(view *v, int has_footprint)
 }
 
 /* Zero times a finite number is 0, times anything else NaN. */
-static int all_finite(const dsm_receiver *r)
+int receiver_is_sound(const dsm_receiver *r)
 {
+  if (r->plane_count > 2)
+    return 0;
   double sum = (r->point[0] + r->point[1] + r->point[2]) * 0;
   for (uint32_t k = 0; k < r->plane_count; k++)
     sum += (r->planes[k].normal[0] + r->planes[k].normal[1] + r->planes[k].normal[2] + r->planes[k].rise) * 0;
@@ -175,7 +177,7 @@ static dsm_result look_up(dsm_worker *worker, const dsm_receiver *receiver, doub
 
 dsm_result map_lookup(dsm_worker *worker, const dsm_receiver *receiver, double out[3])
 {
-  if (receiver->plane_count > 2 || !all_finite(receiver))
+  if (!receiver_is_sound(receiver))
     return DSM_INVALID;
   worker_enter(worker);
   dsm_result result = map_has_depths(worker->map) ? depth_look_up(worker, receiver, out) : look_up(worker, receiver, out);

@@ -6,6 +6,9 @@
 
 #include "map/worker.h"
 
+/* Whether all its numbers are finite, and it has no more planes than there is room for. */
+int receiver_is_sound(const dsm_receiver *receiver);
+
 /* Published; see dsm.h. No lock and no allocation once the tiles are there. */
 dsm_result map_lookup(dsm_worker *worker, const dsm_receiver *receiver, double out[3]);
 

@@ -98,17 +98,17 @@ dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, co
 {
   coded_tile coded = {.count = 0};
   size_t room = 0;
-  int marked = 0;
+  int told = 0;   /* something else than vertices */
   *out = NULL;
   for (int i = 0; i < TILE_PIXELS; i++) {
     const baked_pixel *p = &pixels[i];
     coded.plan.marked[i] = p->marked || p->absent;
     coded.plan.need[i] = p->need;
     coded.volume |= p->volume != 0;
-    marked |= coded.plan.marked[i];
+    told |= coded.plan.marked[i] || p->need;
     room += p->count;
   }
-  if (!room && !marked) {
+  if (!room && !told) {
     *out = &tile_lit;
     return DSM_OK;
   }

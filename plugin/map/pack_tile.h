@@ -8,7 +8,7 @@
 #include "map/baked_pixel.h"
 #include "map/tile.h"
 
-/* *out: a new compact tile, or &tile_lit if no pixel stores or is marked. The near depth is that of the nearest vertex. Drops
+/* *out: a new compact tile, or &tile_lit if no pixel stores, is marked or wants a finer level. The near depth is that of the nearest vertex. Drops
  * vertices that coincide, once rounded, with one before and one behind, and colours that rounding has made grey; lowers the
  * pixels' counts and flags to match. */
 dsm_result pack_tile(baked_pixel pixels[TILE_PIXELS], const vertices *stored, const rounding *rule, const tile **out);

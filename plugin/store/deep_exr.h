@@ -63,8 +63,9 @@ typedef struct {
   deep_reader *(*open)(const char *path, deep_error *error);   /* NULL: failed */
   /* NULL: the first part has no such text. Lives as long as the reader. */
   const char *(*attribute)(deep_reader *reader, const char *name);
-  /* Whether the file has these parts, and no more. To be asked, and answered with yes, before anything is read. */
-  int (*has_parts)(deep_reader *reader, const deep_part *parts, uint32_t part_count);
+  /* Whether the file has these parts, and no more. To be asked, and answered with yes, before anything is read. `error` is left alone
+   * unless something else went wrong. */
+  int (*has_parts)(deep_reader *reader, const deep_part *parts, uint32_t part_count, deep_error *error);
   /* Fills `tile`, enlarging `words` as needed; they are not NULL then, even if there are none. 0: failed; `words` is still the caller's. */
   int (*read)(deep_reader *reader, uint32_t part, uint32_t x, uint32_t y, deep_tile *tile, deep_error *error);
   void (*close)(deep_reader *reader);

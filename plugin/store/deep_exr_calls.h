@@ -65,7 +65,7 @@ int DeepWrite(deep_writer *writer, uint32_t part, uint32_t x, uint32_t y, const 
 void DeepFinish(deep_writer *writer);
 deep_reader *DeepOpen(const char *path, deep_error *error);
 const char *DeepAttribute(deep_reader *reader, const char *name);
-int DeepHasParts(deep_reader *reader, const deep_part *parts, uint32_t partCount);
+int DeepHasParts(deep_reader *reader, const deep_part *parts, uint32_t partCount, deep_error *error);
 int DeepRead(deep_reader *reader, uint32_t part, uint32_t x, uint32_t y, deep_tile *tile, deep_error *error);
 void DeepClose(deep_reader *reader);
 

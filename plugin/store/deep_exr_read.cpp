@@ -68,10 +68,9 @@ static std::vector<int> PlacesOfChannels(const ImageSpec& spec, const deep_part&
     return same ? places : std::vector<int>();
 }
 
-int DeepHasParts(deep_reader *reader, const deep_part *parts, uint32_t partCount)
+int DeepHasParts(deep_reader *reader, const deep_part *parts, uint32_t partCount, deep_error *error)
 {
-    deep_error ignored;
-    return GuardedWithRoom(&ignored, 0, [&]() -> int {
+    return GuardedWithRoom(error, 0, [&]() -> int {
         reader->places.clear();
         reader->flat = partCount > 0 && parts[0].flat;
         for (uint32_t i = 0; i < partCount; i++)

@@ -133,6 +133,7 @@ enum { LEAST_TILE = 40 };
 
 static dsm_result check_content(map_file *file, uint64_t size, map_header *header, map_reason *why)
 {
+  deep_error error = {""};
   dsm_result result = map_header_read(get_attribute, file, file->path, header, why);
   if (result != DSM_OK)
     return result;
@@ -140,9 +141,9 @@ static dsm_result check_content(map_file *file, uint64_t size, map_header *heade
   map_parts_lay(&file->parts, &header->projection, file->kind);
   if (file->parts.tile_count > size / LEAST_TILE)
     result = map_refused(why, "The shadow map \"%s\" is damaged or cut off: it is too short for its tiles.", file->path);
-  else if (!file->exr->has_parts(file->reader, file->parts.parts, file->parts.count))
-    result = map_refused(why, "The shadow map \"%s\" is damaged: it does not have the parts that its header tells of.",
-                         file->path);
+  else if (!file->exr->has_parts(file->reader, file->parts.parts, file->parts.count, &error))
+    result = is_memory(&error) ? map_no_memory(why)
+           : map_refused(why, "The shadow map \"%s\" is damaged: it does not have the parts that its header tells of.", file->path);
   else if (!table_is_sound(file))
     result = map_refused(why, "The shadow map \"%s\" is damaged or cut off: its table of tiles is not where it should be.",
                          file->path);

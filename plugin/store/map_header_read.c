@@ -232,7 +232,8 @@ dsm_result map_header_read(const char *(*get)(void *data, const char *name), voi
           && read_content(&g, header);
   restore_numbers(&style);
   dsm_result result = read ? check_texts(&g, header, path, why)
-                           : map_refused(why, "The shadow map \"%s\" is damaged: its header cannot be read.", path);
+                    : header->scene_count && !header->scenes ? map_no_memory(why)
+                    : map_refused(why, "The shadow map \"%s\" is damaged: its header cannot be read.", path);
   if (result != DSM_OK)
     map_header_free(header);
   return result;

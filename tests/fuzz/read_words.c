@@ -53,8 +53,8 @@ static const char *attribute(deep_reader *reader, const char *name) {
   return NULL;
 }
 
-static int has_parts(deep_reader *reader, const deep_part *parts, uint32_t count) {
-  (void)reader, (void)count;
+static int has_parts(deep_reader *reader, const deep_part *parts, uint32_t count, deep_error *error) {
+  (void)reader, (void)count, (void)error;
   all_parts = parts;
   return 1;
 }

@@ -20,9 +20,9 @@ static const char *attribute(deep_reader *reader, const char *name) {
   return text;
 }
 
-static int has_parts(deep_reader *reader, const deep_part *parts, uint32_t count) {
+static int has_parts(deep_reader *reader, const deep_part *parts, uint32_t count, deep_error *error) {
   all_parts = parts;
-  return deep_exr_table.has_parts(reader, parts, count);
+  return deep_exr_table.has_parts(reader, parts, count, error);
 }
 
 static void put(uint32_t number, size_t bytes) {

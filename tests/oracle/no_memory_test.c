@@ -227,6 +227,7 @@ static void live(kind k, way how, double cache, answers *a) {
   if (result == DSM_OK) result = dsm_api.worker_create(map, &w, &worker);
   if (result == DSM_OK) result = work(worker, how, stride_of(k, cache), a);
   assert_true(result == DSM_OK || result == DSM_NO_MEMORY || result == DSM_REFUSED || (how == SAVED && result == DSM_TRACE));
+  if (how == LOADED && strstr(w.last, "damaged")) fail_msg("of a file that is whole: %s", w.last);
   if (map) {
     dsm_statistics statistics = {.size = sizeof statistics};
     dsm_api.statistics(map, &statistics);

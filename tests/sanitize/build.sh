@@ -17,7 +17,7 @@ esac
 mkdir -p "$tree"
 cd "$top"
 find plugin tests build-aux \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.map' -o -path 'build-aux/*' \) -type f -print0 |
-  xargs -0 cp -u -p --parents --target-directory="$tree"
+  xargs -0 cp -u --parents --target-directory="$tree"   # as new as the copy is: what was edited during the last build is compiled again
 cp -u -p --parents --target-directory="$tree" doc/dsmtool.1 aclocal.m4 configure configure.ac Makefile.am Makefile.in
 
 cd "$tree"
