@@ -17,10 +17,8 @@
 #include "core/extremes.h"
 #include "core/vertices.h"
 
-/* LV 4: half of the worst noise that this many rays can have. With 16 rays that is the step of one of them, which stays,
- * whatever rounding says: look-ups average the noise of pixels, but not what compression makes of their steps (measured on hair: with 16
- * rays, smoothing steps of one ray raises the error by a sixth). */
-static inline double noise_ceiling(double rays) { return (0.25 - 1e-9) / sqrt(rays); }
+/* LV 4: half of the worst noise that this many rays can have. */
+static inline double noise_ceiling(double rays) { return 0.25 / sqrt(rays); }
 
 /* What turns sums of squared differences into squared errors, for so many rays. */
 typedef struct { double variance, ceiling; } noise_scale;

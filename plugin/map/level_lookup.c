@@ -266,15 +266,12 @@ static inline int begin_tile(view *v, const tile *t)
   return (t->layout & ~TILE_REFINED) == 0;
 }
 
-/* A tile to read: &tile_lit in place of one that is not there and would tell nothing else. */
+/* A tile to read: &tile_lit in place of one that would tell nothing else. Never mind whether it is there: answers do not depend on what
+ * others have asked. */
 static inline dsm_result find_tile(const view *v, const tile_key *key, const tile **out)
 {
-  dsm_worker *worker = v->worker;
-  *out = tile_cache_hold(tile_store_slot(&worker->map->store, key), &worker->holder);
-  if (*out)
-    return DSM_OK;
-  if (!lone_caster_is_behind(worker->map, key, v->receiver))
-    return worker_need_tile(worker, key, out);
+  if (!lone_caster_is_behind(v->worker->map, key, v->receiver))
+    return worker_tile(v->worker, key, out);
   *out = &tile_lit;
   return DSM_OK;
 }

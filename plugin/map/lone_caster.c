@@ -6,9 +6,6 @@
 
 #include "core/box_outline.h"
 
-/* What is remembered of a tile; FIRST is the first caster. */
-enum { NOT_LOOKED = 0, SEVERAL, NONE, FIRST };
-
 /* With more casters than that, looking at all their boxes would cost more than it spares. */
 enum { MOST_BOXES = 2000 };
 
@@ -20,7 +17,7 @@ dsm_result lone_casters_create(dsm_map *map)
   uint64_t casters = map->light.caster_count;
   if (casters == 0 || casters > MOST_BOXES || map->first_level > 0 || map_has_depths(map))
     return DSM_OK;
-  map->lone_casters = calloc(map->store.tile_count + 1, sizeof *map->lone_casters);   /* all bits zero: NOT_LOOKED */
+  map->lone_casters = calloc(map->store.tile_count + 1, sizeof *map->lone_casters);   /* all bits zero: LONE_NOT_LOOKED */
   return map->lone_casters ? DSM_OK : DSM_NO_MEMORY;
 }
 
@@ -42,12 +39,12 @@ static uint32_t look(const dsm_map *map, const tile_key *key)
 {
   const projection *p = &map->projection;
   rectangle area = area_of(map, key);
-  uint32_t found = NONE;
-  for (uint32_t i = 0; i < map->light.caster_count && found != SEVERAL; i++) {
+  uint32_t found = LONE_NONE;
+  for (uint32_t i = 0; i < map->light.caster_count && found != LONE_SEVERAL; i++) {
     outline seen = OUTLINE_EMPTY;
     outline_add(&seen, p->origin, &p->faces[key->face].axes, p->perspective, &area, &map->light.casters[i]);
     if (seen.area.u0 <= seen.area.u1)
-      found = found == NONE ? FIRST + i : SEVERAL;
+      found = found == LONE_NONE ? LONE_FIRST + i : LONE_SEVERAL;
   }
   return found;
 }
@@ -64,17 +61,15 @@ static int is_behind(const dsm_box *box, const double point[3], const double nor
   return farthest <= slack;   /* not where it is no number */
 }
 
-int lone_caster_is_behind(const dsm_map *map, const tile_key *key, const dsm_receiver *receiver)
+int lone_caster_look(const dsm_map *map, const tile_key *key, const dsm_receiver *receiver)
 {
-  if (!map->lone_casters || map->source)
-    return 0;
   _Atomic uint32_t *known = &map->lone_casters[tile_store_number(&map->store, key)];
   uint32_t caster = atomic_load_explicit(known, memory_order_relaxed);
-  if (caster == NOT_LOOKED) {
+  if (caster == LONE_NOT_LOOKED) {
     caster = look(map, key);   /* whoever looks finds the same */
     atomic_store_explicit(known, caster, memory_order_relaxed);
   }
-  if (caster < FIRST)
-    return caster == NONE;
-  return receiver->plane_count > 0 && is_behind(&map->light.casters[caster - FIRST], receiver->point, receiver->planes[0].normal);
+  if (caster < LONE_FIRST)
+    return caster == LONE_NONE;
+  return receiver->plane_count > 0 && is_behind(&map->light.casters[caster - LONE_FIRST], receiver->point, receiver->planes[0].normal);
 }

@@ -7,7 +7,6 @@
 #include <cmocka.h>
 
 #include "bake/smooth_noise.h"
-#include "bake/step_sweep.h"
 #include "core/compress.h"
 #include "random.h"
 
@@ -95,45 +94,10 @@ static void one_stretch_is_compressed_already(void **state) {
   }
 }
 
-/* Opaque surfaces that 16 rays meet, each at its own depth or not at all: what one ray adds is no more smoothed than kept by chance. */
-static void steps_of_one_ray_in_sixteen_stay(void **state) {
-  (void)state;
-  enum { RAYS = 16 };
-  step_scratch scratch = {0};
-  noise_profile profile = {0};
-  vertices mean = {0}, relative = {0}, out = {0};
-  for (uint64_t seed = 0; seed < most_cases(2000); ++seed) {
-    rng r = rng_seeded(seed);
-    event surfaces[RAYS];
-    step_input in = {.surfaces = surfaces, .rays = RAYS, .channels = 1};
-    noise_limits limits = {0.002, noise_ceiling(RAYS), 0.01, 0};
-    int compressed;
-    mean.count = out.count = 0;
-    for (uint32_t ray = 0; ray < RAYS; ++ray) {
-      double z = rng_between(&r, 1, 3);
-      if (seed % 3 == 0 || rng_between(&r, 0, 1) < 0.7)
-        surfaces[in.count++] = (event){z, z, {{0, 0, 0}}, ray};
-    }
-    assert_int_equal(step_sweep(&in, &scratch, &profile, &mean), DSM_OK);
-    assert_int_equal(smooth_noise(&mean, &profile, 1, &limits, &relative, &out, &compressed), DSM_OK);
-    for (size_t i = 0; i < mean.count; ++i) {
-      double z = mean.data[i].z, behind = nextafter(z, 9);
-      assert_seeded(&r, fabs(vertices_at(out.data, out.count, z).c[0] - vertices_at(mean.data, mean.count, z).c[0]) < 1e-9);
-      assert_seeded(&r, fabs(vertices_at(out.data, out.count, behind).c[0] - vertices_at(mean.data, mean.count, behind).c[0]) < 1e-9);
-    }
-  }
-  vertices_free(&mean);
-  vertices_free(&relative);
-  vertices_free(&out);
-  noise_free(&profile);
-  step_free(&scratch);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(calm_parts_stay),
     cmocka_unit_test(one_stretch_is_compressed_already),
-    cmocka_unit_test(steps_of_one_ray_in_sixteen_stay),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
