@@ -11,6 +11,7 @@
 typedef struct {
   double *now;           /* transmittance of each ray behind the depths met so far: a number a channel */
   uint32_t rays;
+  double share;          /* of a ray, where that is exact, as it spares a division; else 0 */
   compensated sum[3];    /* of `now`, over all rays */
   double *gaps;          /* [i]: squared difference of rays i and i + 1; NULL: the noise is not wanted */
   double squares;        /* the sum of `gaps`, */
@@ -65,7 +66,7 @@ FOR_CHANNELS int settle(const sweep *s, int channels, rgb *mean)
 {
   int fallen = 0;
   for (int c = 0; c < channels; c++) {
-    double v = compensated_total(&s->sum[c]) / s->rays;
+    double v = s->share > 0 ? compensated_total(&s->sum[c]) * s->share : compensated_total(&s->sum[c]) / s->rays;
     if (!(v < mean->c[c]))
       continue;
     mean->c[c] = v > 0 ? v : 0;
@@ -144,7 +145,7 @@ dsm_result step_sweep(const step_input *in, step_scratch *scratch, noise_profile
     scratch->keys[i] = (depth_key){in->surfaces[i].front, i};
   depth_sort(scratch->keys, in->count, scratch->keys + in->count);
 
-  sweep s = {.now = scratch->numbers, .rays = in->rays};
+  sweep s = {.now = scratch->numbers, .rays = in->rays, .share = in->rays & (in->rays - 1) ? 0 : 1.0 / in->rays};
   for (size_t i = 0; i < values; i++)
     s.now[i] = 1;
   if (profile) {
