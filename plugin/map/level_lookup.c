@@ -234,7 +234,7 @@ static dsm_result add_rows(view *v, const tile *t, uint32_t x, uint32_t y, doubl
 
 /* As add_rows for a point in the air, where pixels are plain: nothing can be in doubt. Of most look-ups, as media ask at every sample. */
 static inline __attribute__((always_inline)) dsm_result add_air_as(view *v, const tile *t, uint32_t x, uint32_t y, const double weight[4],
-                                                                   size_t bytes, int whole)
+                                                                   size_t bytes)
 {
   uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;
   const unsigned char *counts = tile_counts(t) + place;
@@ -249,7 +249,7 @@ static inline __attribute__((always_inline)) dsm_result add_air_as(view *v, cons
     visibility function = {&t->codes, first[k], count[k], count[k], 1};
     visibility_place at;
     uint32_t *hint = &v->worker->hints[(y + (k >> 1)) % HINT_SIDE * HINT_SIDE + (x + (k & 1)) % HINT_SIDE];
-    if (visibility_find_as(&function, v->key, hint, &at, bytes, whole))
+    if (visibility_find_as(&function, v->key, hint, &at, bytes, 1))
       lost += weight[k] * (1 - visibility_value(&function, &at, 0));
   }
   v->lost_grey += lost;
@@ -301,11 +301,9 @@ static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, ui
   pixel_adder *add = adder_of(t, plain);
   if (!v->plane_count) {
     if (add == add_pixel_of_4)
-      return add_air_as(v, t, x, y, weight, 4, 1);
+      return add_air_as(v, t, x, y, weight, 4);
     if (add == add_pixel_of_5)
-      return add_air_as(v, t, x, y, weight, 5, 1);
-    if (add == add_pixel_of_6)
-      return add_air_as(v, t, x, y, weight, 6, 0);
+      return add_air_as(v, t, x, y, weight, 5);
   }
   return add_rows(v, t, x, y, size, weight, add);
 }
