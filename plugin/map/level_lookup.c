@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
-#include "map/lone_caster.h"
 #include "map/view.h"
 
 /* How much of the light that a pixel lets through in front of a surface its own slope may take away in the
@@ -266,16 +265,6 @@ static inline int begin_tile(view *v, const tile *t)
   return (t->layout & ~TILE_REFINED) == 0;
 }
 
-/* A tile to read: &tile_lit in place of one that would tell nothing else. Never mind whether it is there: answers do not depend on what
- * others have asked. */
-static inline dsm_result find_tile(const view *v, const tile_key *key, const tile **out)
-{
-  if (!lone_caster_is_behind(v->worker->map, key, v->receiver))
-    return worker_tile(v->worker, key, out);
-  *out = &tile_lit;
-  return DSM_OK;
-}
-
 /* What reads a pixel of the tile. The least that a float and a value take is 5 bytes, the most that another code and a value do as well. */
 static inline pixel_adder *adder_of(const tile *t, int plain)
 {
@@ -294,7 +283,7 @@ static inline dsm_result add_square(view *v, const tile_key *key, uint32_t x, ui
                                     const double weight[4])
 {
   const tile *t;
-  dsm_result result = find_tile(v, key, &t);
+  dsm_result result = worker_tile(v->worker, key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   int plain = begin_tile(v, t);
@@ -312,7 +301,7 @@ static dsm_result add_apart(view *v, uint32_t level, uint32_t x, uint32_t y, dou
 {
   tile_key key = {v->at->face, level, x / TILE_SIDE, y / TILE_SIDE};
   const tile *t;
-  dsm_result result = find_tile(v, &key, &t);
+  dsm_result result = worker_tile(v->worker, &key, &t);
   if (result != DSM_OK || t->kind != TILE_STORED)
     return result != DSM_OK ? result : t->kind == TILE_LIT ? DSM_OK : DSM_TRACE;
   uint32_t place = y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE;

@@ -9,7 +9,6 @@
 
 #include "core/face_fit.h"
 #include "core/footprint.h"
-#include "map/lone_caster.h"
 #include "map/worker.h"
 
 /* A filter's support is enlarged by this before the receiver's plane is searched for its nearest depth:
@@ -120,10 +119,6 @@ dsm_result map_create_framed(const dsm_host *host, const dsm_light *light, const
     free(map);
     return refuse(host, DSM_NO_MEMORY, "There is no memory for the tile table of a shadow map.");
   }
-  if (lone_casters_create(map) != DSM_OK) {
-    map_destroy(map);
-    return refuse(host, DSM_NO_MEMORY, "There is no memory for what a shadow map's tiles meet.");
-  }
   *out = map;
   return DSM_OK;
 }
@@ -137,7 +132,6 @@ void map_destroy(dsm_map *map)
   if (map->saving)
     map->saving->destroy(map->saving);
   tile_store_destroy(&map->store);
-  lone_casters_destroy(map);
   free(map);
 }
 
@@ -251,7 +245,7 @@ void map_statistics(const dsm_map *map, dsm_statistics *out)
   if (s.faces == 0)
     s.near_depth = 0;
   s.tiles = map->store.tile_count;
-  uint64_t bookkeeping = sizeof *map + s.tiles * sizeof(tile_slot) + s.tiles / 8 + (map->lone_casters ? s.tiles * sizeof *map->lone_casters : 0);
+  uint64_t bookkeeping = sizeof *map + s.tiles * sizeof(tile_slot) + s.tiles / 8;
 
   pthread_mutex_t *mutex = (pthread_mutex_t *)(size_t)&map->store.mutex;   /* const towards the host only */
   pthread_mutex_lock(mutex);

@@ -49,7 +49,6 @@ struct dsm_map {
   exploration explored;
   uint32_t explored_level; /* what camera rays read then, on average; 0: not known */
   tile_store store;
-  _Atomic uint32_t *lone_casters;   /* see lone_caster.h; NULL: nobody asks */
   tile_source *source;     /* NULL: tiles are baked; set before the first look-up */
   map_saving *saving;      /* NULL: the map is not going to be saved */
 
