@@ -97,7 +97,7 @@ static void reach_is_bounded(void **state) {
     assert_seeded(&r, footprint_may_reach(&s, reach) && footprint_may_reach(&s, -1e9) && !footprint_may_reach(&s, 1.001 * bound));
     closest = fmin(closest, bound / reach);
   }
-  assert_true(closest < 3);
+  assert_true(closest < UNLESS_SLOW(3, 6));   /* few cases come less close */
   spread odd = {NAN, 0, 1};
   assert_true(footprint_may_reach(&odd, 1e300));
 }
