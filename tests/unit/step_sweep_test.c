@@ -256,6 +256,7 @@ static void nothing_in_nothing_out(void **state) {
   batch_end(&b, 0, 3);
   assert_int_equal(step_sweep(&b.in, &scratch, &noise, &mean), DSM_OK);
   assert_int_equal(mean.count, 0);
+  vertices_free(&mean);   /* it may have been given room */
   noise_free(&noise);
   step_free(&scratch);
   batch_free(&b);
